@@ -1,0 +1,2 @@
+//! The sprung command.
+fn main() {}

@@ -1,0 +1,5 @@
+//! Contact: what happens to a point that enters a collider. One file per collider shape.
+
+mod plane;
+
+pub use plane::{ContactLaw, Plane};

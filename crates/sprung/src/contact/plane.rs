@@ -1,0 +1,109 @@
+//! The ground plane, and the two laws by which it pushes.
+
+use glam::{DVec3, Vec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Code, Error, Result};
+use crate::math::dot;
+use crate::params::{DAMPING_RANGE, STIFFNESS_RANGE, check_in, check_vector};
+
+/// How a touched plane answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ContactLaw {
+    /// Spring and damper, k_c·p − k_c,d·v_n, but never a pull: negative forces become zero.
+    #[default]
+    Push,
+    /// Spring and damper as the report writes them: k_c·p − k_c,d·v_n. Near lift-off the damper can hold the point down.
+    Report,
+}
+
+/// A ground plane: points below it are pushed back along its normal.
+///
+/// With depth p = (point − x)·n and normal speed v_n = v·n, a point with p > 0 feels f = (k_c·p − k_c,d·v_n)·n.
+/// Nothing happens at p = 0 or above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Any point of the plane, m.
+    pub point: Vec3,
+    /// Unit normal, pointing out of the ground.
+    pub normal: Vec3,
+    /// Contact stiffness k_c, N/m for each touching point.
+    pub stiffness: f32,
+    /// Contact damping k_c,d, N·s/m for each touching point.
+    pub damping: f32,
+    /// Whether the contact may pull.
+    pub law: ContactLaw,
+}
+
+impl Plane {
+    /// A level plane at height `y` (m) that never pulls.
+    pub fn level(y: f32, stiffness: f32, damping: f32) -> Self {
+        let point = Vec3::new(0.0, y, 0.0);
+        Self { point, normal: Vec3::Y, stiffness, damping, law: ContactLaw::default() }
+    }
+
+    /// Checks ranges and that the normal has unit length.
+    pub(crate) fn validate(&self) -> Result<()> {
+        check_vector("point", self.point)?;
+        check_vector("normal", self.normal)?;
+        check_in("stiffness", self.stiffness, &STIFFNESS_RANGE)?;
+        check_in("damping", self.damping, &DAMPING_RANGE)?;
+        let length = self.normal.length();
+        if (length - 1.0).abs() > 1e-5 {
+            let sentence = format!("has length {length}, and must have length 1");
+            return Err(Error::new(Code::OutOfRange, sentence).at_field("normal"));
+        }
+        Ok(())
+    }
+
+    /// How deep a position lies below the plane, m; negative above it.
+    #[inline(always)]
+    pub fn depth(&self, position: Vec3) -> f32 {
+        dot(self.point - position, self.normal)
+    }
+
+    /// The force on a point, N.
+    #[inline(always)]
+    pub(crate) fn force(&self, position: Vec3, velocity: Vec3) -> Vec3 {
+        let depth = self.depth(position);
+        if depth <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let push = self.stiffness * depth - self.damping * dot(velocity, self.normal);
+        self.normal * self.limit(push)
+    }
+
+    #[inline(always)]
+    fn limit(&self, push: f32) -> f32 {
+        match self.law {
+            ContactLaw::Push => push.max(0.0),
+            ContactLaw::Report => push,
+        }
+    }
+
+    /// Depth in float64, for the ledger.
+    pub(crate) fn depth64(&self, position: DVec3) -> f64 {
+        (self.point.as_dvec3() - position).dot(self.normal.as_dvec3())
+    }
+
+    /// The stored energy ½k_c·p² of a touching point, J.
+    pub(crate) fn potential(&self, position: DVec3) -> f64 {
+        let depth = self.depth64(position).max(0.0);
+        0.5 * f64::from(self.stiffness) * depth * depth
+    }
+
+    /// The two parts of the force in float64: the spring's, and all the rest, which only takes energy out.
+    pub(crate) fn force_parts(&self, position: DVec3, velocity: DVec3) -> (DVec3, DVec3) {
+        let depth = self.depth64(position);
+        if depth <= 0.0 {
+            return (DVec3::ZERO, DVec3::ZERO);
+        }
+        let normal = self.normal.as_dvec3();
+        let spring = f64::from(self.stiffness) * depth;
+        let push = spring - f64::from(self.damping) * velocity.dot(normal);
+        let total = if self.law == ContactLaw::Push { push.max(0.0) } else { push };
+        (normal * spring, normal * (total - spring))
+    }
+}

@@ -1,0 +1,1 @@
+//! The explicit step's inner loops.

@@ -1,0 +1,64 @@
+//! The few vector operations of the step, written out so that the order of every operation is fixed.
+
+use glam::{DMat3, DVec3, Vec3};
+
+/// Squared length below which two points count as coincident, m²: there a spring has no axis.
+/// Above it no term of the step is a denormal number.
+pub(crate) const COINCIDENT_SQUARED: f32 = 1e-30;
+
+/// x·y + y·y + z·z, summed from left to right.
+#[inline(always)]
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+/// The Euclidean distance exactly as the step computes it, so that a spring made at rest has no force at all.
+#[inline(always)]
+pub(crate) fn distance(a: Vec3, b: Vec3) -> f32 {
+    let e = a - b;
+    dot(e, e).sqrt()
+}
+
+/// Distance in float64, for energies and limits.
+#[inline(always)]
+pub(crate) fn distance64(a: DVec3, b: DVec3) -> f64 {
+    (a - b).length()
+}
+
+/// The rotation by `degrees` about `axis` (any length but zero), by Rodrigues' formula.
+/// `libm` rather than the system's sine: the same bits everywhere.
+pub(crate) fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
+    let u = axis / axis.length();
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let cross = DMat3::from_cols(DVec3::new(0.0, u.z, -u.y), DVec3::new(-u.z, 0.0, u.x), DVec3::new(u.y, -u.x, 0.0));
+    let outer = DMat3::from_cols(u * u.x, u * u.y, u * u.z);
+    DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos)
+}
+
+/// a + b in float32 and what the rounding dropped (Knuth's TwoSum): the two parts add up to a + b exactly.
+#[inline(always)]
+pub(crate) fn two_sum(a: f32, b: f32) -> (f32, f32) {
+    let sum = a + b;
+    let b_virtual = sum - a;
+    let a_virtual = sum - b_virtual;
+    (sum, (a - a_virtual) + (b - b_virtual))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotation_keeps_the_axis_and_turns_by_the_right_hand() {
+        let axis = DVec3::new(1.0, 1.0, 1.0);
+        let r = rotation(axis, 120.0);
+        assert!((r * axis - axis).length() < 1e-15);
+        assert!((r * DVec3::X - DVec3::Y).length() < 1e-15);
+    }
+
+    #[test]
+    fn two_sum_is_exact() {
+        let (sum, rest) = two_sum(1.0e8, 1.25);
+        assert_eq!(f64::from(sum) + f64::from(rest), 1.0e8 + 1.25);
+    }
+}

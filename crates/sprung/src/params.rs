@@ -1,0 +1,289 @@
+//! The parameters: everything that may change while a simulation runs, each with its unit and its allowed range.
+
+use std::collections::BTreeMap;
+use std::ops::{Range, RangeInclusive};
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::contact::Plane;
+use crate::error::{Code, Error, Result};
+use crate::model::Model;
+
+/// Allowed step lengths, s.
+pub const DT_RANGE: RangeInclusive<f64> = 1e-9..=1e3;
+/// Allowed steps per frame.
+pub const SUBSTEPS_RANGE: RangeInclusive<u32> = 1..=1_000_000;
+/// Allowed masses of points that can move, kg; zero fixes a point in space.
+pub const MASS_RANGE: RangeInclusive<f32> = 1e-12..=1e12;
+/// Allowed stiffness, N/m.
+pub const STIFFNESS_RANGE: RangeInclusive<f32> = 0.0..=1e12;
+/// Allowed damping, N·s/m.
+pub const DAMPING_RANGE: RangeInclusive<f32> = 0.0..=1e12;
+/// Allowed size of a coordinate (m), speed (m/s), acceleration (m/s²) or force (N).
+pub const MAGNITUDE_RANGE: RangeInclusive<f32> = -1e9..=1e9;
+/// Allowed rest lengths, m.
+pub const LENGTH_RANGE: RangeInclusive<f32> = 0.0..=1e9;
+
+/// A pull on one point by a spring whose other end is held somewhere in space, such as a mouse cursor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grab {
+    /// The point that is pulled.
+    pub point: usize,
+    /// Where the other end is held, m.
+    pub target: Vec3,
+    /// Stiffness of the pulling spring (rest length zero), N/m.
+    pub stiffness: f32,
+    /// Damping of the point's velocity while it is held, N·s/m.
+    pub damping: f32,
+}
+
+/// All that may change while a simulation runs. Cheap to clone: the long arrays are shared until one side changes them.
+///
+/// Arrays over points have one entry per point of the [`Model`], arrays over springs one per spring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Length of one step, s.
+    pub dt: f64,
+    /// Steps per displayed frame.
+    pub substeps: u32,
+    /// Gravitational acceleration, m/s².
+    pub gravity: Vec3,
+    /// Ground planes.
+    pub planes: Vec<Plane>,
+    /// Mass of each point, kg. Zero: fixed in space.
+    pub point_mass: Arc<Vec<f32>>,
+    /// Whether each point is pinned: fixed in space while this is true, whatever its mass.
+    pub point_pinned: Arc<Vec<bool>>,
+    /// Stiffness k_s of each spring, N/m.
+    pub spring_stiffness: Arc<Vec<f32>>,
+    /// Damping k_d along each spring, N·s/m.
+    pub spring_damping: Arc<Vec<f32>>,
+    /// Rest length L of each spring, m.
+    pub spring_rest_length: Arc<Vec<f32>>,
+    /// Whether each spring has been cut: it then exerts no force.
+    pub spring_cut: Arc<Vec<bool>>,
+    /// Constant forces on single points, N.
+    pub external_forces: BTreeMap<usize, Vec3>,
+    /// Pulls on single points.
+    pub grabs: Vec<Grab>,
+}
+
+/// One change of the parameters, as the run log keeps it.
+///
+/// Points and springs are given as ranges of indices: `7..8` is one of them, `body.points.clone()` a body's,
+/// `0..model.spring_count()` all.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Length of one step, s.
+    Dt(f64),
+    /// Steps per displayed frame.
+    Substeps(u32),
+    /// Gravitational acceleration, m/s².
+    Gravity(Vec3),
+    /// All ground planes.
+    Planes(Vec<Plane>),
+    /// Mass of some points, kg; zero fixes them.
+    Mass(Range<usize>, f32),
+    /// Pins (true) or frees (false) some points. A point that is pinned stops at once.
+    Pin(Range<usize>, bool),
+    /// Stiffness of some springs, N/m.
+    Stiffness(Range<usize>, f32),
+    /// Damping of some springs, N·s/m.
+    Damping(Range<usize>, f32),
+    /// Rest length of some springs, as a multiple of the length they were built with.
+    RestScale(Range<usize>, f32),
+    /// Cuts (true) or mends (false) some springs.
+    Cut(Range<usize>, bool),
+    /// A constant force on a point, N; zero takes it away.
+    Force(usize, Vec3),
+    /// Pulls a point; replaces an earlier grab of the same point.
+    Grab(Grab),
+    /// Lets a grabbed point go.
+    Release(usize),
+}
+
+impl Params {
+    /// 1/m of each point, 1/kg; zero for one that is fixed by its zero mass or by a pin.
+    pub fn inverse_mass(&self, point: usize) -> f32 {
+        let mass = self.point_mass[point];
+        if mass == 0.0 || self.point_pinned[point] { 0.0 } else { 1.0 / mass }
+    }
+
+    /// Whether a point is held in space.
+    pub fn is_fixed(&self, point: usize) -> bool {
+        self.point_mass[point] == 0.0 || self.point_pinned[point]
+    }
+
+    /// Whether a spring can move anything: not cut, and not between two fixed points.
+    pub fn is_live(&self, model: &Model, spring: usize) -> bool {
+        let [i, j] = model.springs[spring];
+        !self.spring_cut[spring] && !(self.is_fixed(i as usize) && self.is_fixed(j as usize))
+    }
+
+    /// Checks every value against its range and every array against the model.
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`] or [`Code::Conflict`], naming the field.
+    pub fn validate(&self, model: &Model) -> Result<()> {
+        check_in("dt", self.dt, &DT_RANGE)?;
+        check_in("substeps", self.substeps, &SUBSTEPS_RANGE)?;
+        check_vector("gravity", self.gravity)?;
+        for (index, plane) in self.planes.iter().enumerate() {
+            plane.validate().map_err(|error| error.at_field(format!("plane[{index}]")))?;
+        }
+        let (points, springs) = (model.point_count(), model.spring_count());
+        check_len("point_mass", self.point_mass.len(), points)?;
+        check_len("point_pinned", self.point_pinned.len(), points)?;
+        check_len("spring_stiffness", self.spring_stiffness.len(), springs)?;
+        check_len("spring_damping", self.spring_damping.len(), springs)?;
+        check_len("spring_rest_length", self.spring_rest_length.len(), springs)?;
+        check_len("spring_cut", self.spring_cut.len(), springs)?;
+        check_all("point_mass", &self.point_mass, check_mass)?;
+        check_all("spring_stiffness", &self.spring_stiffness, |value| check_in("", value, &STIFFNESS_RANGE))?;
+        check_all("spring_damping", &self.spring_damping, |value| check_in("", value, &DAMPING_RANGE))?;
+        check_all("spring_rest_length", &self.spring_rest_length, |value| check_in("", value, &LENGTH_RANGE))?;
+        for (&point, &force) in &self.external_forces {
+            check_index("external_forces", point, points)?;
+            check_vector("external_forces", force)?;
+        }
+        self.grabs.iter().try_for_each(|grab| check_grab(grab, points))
+    }
+
+    /// Makes one change, or none at all if it is not allowed.
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`] for a value or index out of range.
+    pub fn apply(&mut self, model: &Model, change: &Change) -> Result<()> {
+        let (points, springs) = (model.point_count(), model.spring_count());
+        match change {
+            Change::Dt(dt) => {
+                check_in("dt", *dt, &DT_RANGE)?;
+                self.dt = *dt;
+            }
+            Change::Substeps(substeps) => {
+                check_in("substeps", *substeps, &SUBSTEPS_RANGE)?;
+                self.substeps = *substeps;
+            }
+            Change::Gravity(gravity) => {
+                check_vector("gravity", *gravity)?;
+                self.gravity = *gravity;
+            }
+            Change::Planes(planes) => {
+                planes.iter().try_for_each(Plane::validate)?;
+                self.planes = planes.clone();
+            }
+            Change::Mass(range, mass) => {
+                check_mass(*mass).map_err(|error| error.at_field("mass"))?;
+                fill("mass", &mut self.point_mass, range, points, *mass)?;
+            }
+            Change::Pin(range, pinned) => fill("pin", &mut self.point_pinned, range, points, *pinned)?,
+            Change::Stiffness(range, stiffness) => {
+                check_in("stiffness", *stiffness, &STIFFNESS_RANGE)?;
+                fill("stiffness", &mut self.spring_stiffness, range, springs, *stiffness)?;
+            }
+            Change::Damping(range, damping) => {
+                check_in("damping", *damping, &DAMPING_RANGE)?;
+                fill("damping", &mut self.spring_damping, range, springs, *damping)?;
+            }
+            Change::RestScale(range, scale) => {
+                check_in("rest_scale", *scale, &LENGTH_RANGE)?;
+                check_range("rest_scale", range, springs)?;
+                for &length in &model.spring_rest_length[range.clone()] {
+                    check_in("rest_scale", length * scale, &LENGTH_RANGE)?;
+                }
+                let lengths = Arc::make_mut(&mut self.spring_rest_length);
+                for spring in range.clone() {
+                    lengths[spring] = model.spring_rest_length[spring] * scale;
+                }
+            }
+            Change::Cut(range, cut) => fill("cut", &mut self.spring_cut, range, springs, *cut)?,
+            Change::Force(point, force) => {
+                check_index("force", *point, points)?;
+                check_vector("force", *force)?;
+                if *force == Vec3::ZERO {
+                    self.external_forces.remove(point);
+                } else {
+                    self.external_forces.insert(*point, *force);
+                }
+            }
+            Change::Grab(grab) => {
+                check_grab(grab, points)?;
+                self.grabs.retain(|other| other.point != grab.point);
+                self.grabs.push(*grab);
+            }
+            Change::Release(point) => {
+                check_index("release", *point, points)?;
+                self.grabs.retain(|grab| grab.point != *point);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_grab(grab: &Grab, points: usize) -> Result<()> {
+    check_index("grab", grab.point, points)?;
+    check_vector("grab", grab.target)?;
+    check_in("grab", grab.stiffness, &STIFFNESS_RANGE)?;
+    check_in("grab", grab.damping, &DAMPING_RANGE)
+}
+
+/// A mass is zero (fixed) or within [`MASS_RANGE`].
+pub(crate) fn check_mass(mass: f32) -> Result<()> {
+    if mass == 0.0 || MASS_RANGE.contains(&mass) {
+        return Ok(());
+    }
+    let (low, high) = (MASS_RANGE.start(), MASS_RANGE.end());
+    let sentence = format!("is {mass}, and must be 0 kg (fixed) or from {low:e} to {high:e} kg");
+    Err(Error::new(Code::OutOfRange, sentence))
+}
+
+/// A value within a range; false for a NaN.
+pub(crate) fn check_in<T>(field: &str, value: T, range: &RangeInclusive<T>) -> Result<()>
+where
+    T: PartialOrd + std::fmt::Display + std::fmt::LowerExp + Copy,
+{
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let (low, high) = (*range.start(), *range.end());
+    let error = Error::new(Code::OutOfRange, format!("is {value}, and must be from {low:e} to {high:e}"));
+    Err(if field.is_empty() { error } else { error.at_field(field) })
+}
+
+/// A vector of finite numbers of sensible size.
+pub(crate) fn check_vector(field: &str, vector: Vec3) -> Result<()> {
+    vector.to_array().iter().try_for_each(|&value| check_in(field, value, &MAGNITUDE_RANGE))
+}
+
+fn check_len(field: &str, found: usize, expected: usize) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    let sentence = format!("has {found} entries, and the model needs {expected}");
+    Err(Error::new(Code::Conflict, sentence).at_field(field))
+}
+
+fn check_index(field: &str, index: usize, count: usize) -> Result<()> {
+    check_range(field, &(index..index.saturating_add(1)), count)
+}
+
+fn check_range(field: &str, range: &Range<usize>, count: usize) -> Result<()> {
+    if range.start <= range.end && range.end <= count {
+        return Ok(());
+    }
+    let sentence = format!("names indices {} to {}, and there are {count}", range.start, range.end.saturating_sub(1));
+    Err(Error::new(Code::OutOfRange, sentence).at_field(field))
+}
+
+fn check_all(field: &str, values: &[f32], check: impl Fn(f32) -> Result<()>) -> Result<()> {
+    values.iter().enumerate().try_for_each(|(index, &value)| {
+        check(value).map_err(|error| error.at_field(format!("{field}[{index}]")))
+    })
+}
+
+fn fill<T: Clone>(field: &str, values: &mut Arc<Vec<T>>, range: &Range<usize>, count: usize, value: T) -> Result<()> {
+    check_range(field, range, count)?;
+    Arc::make_mut(values)[range.clone()].fill(value);
+    Ok(())
+}
