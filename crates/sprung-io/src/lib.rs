@@ -1,1 +1,9 @@
-//! Files.
+//! Files: motion out, and the one place that knows paths.
+//!
+//! Exporters write to anything that is [`std::io::Write`] + [`std::io::Seek`]; [`files`] alone knows paths.
+
+pub mod export;
+pub mod files;
+
+pub use export::{Export, Exporter, Frame, Options, RunInfo, Written};
+pub use files::PartialFile;

@@ -1,0 +1,82 @@
+//! Motion out: one file per format, chosen by the ending of the file's name.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use sprung::energy::Energy;
+use sprung::{Model, Params, Result, Snapshot};
+
+/// What an exporter may want to know about a run before its first frame.
+#[derive(Clone, Debug)]
+pub struct RunInfo {
+    /// The scene's name, such as `jelly`.
+    pub scene: String,
+    /// The scene's title, such as "A cube of jelly falling on a plane".
+    pub title: String,
+    /// What is joined to what.
+    pub model: Arc<Model>,
+    /// Parameters at the start.
+    pub params: Params,
+    /// Simulated time from one frame to the next, s.
+    pub frame_time: f64,
+}
+
+/// What a user may say about outputs.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Width and height of pictures, in pixels; each format has its own default.
+    pub size: Option<[u32; 2]>,
+    /// Simulated time of the picture in a `.png`, s; the last frame by default.
+    pub at: Option<f64>,
+}
+
+/// One recorded frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Counts from 0, the initial state.
+    pub index: u64,
+    /// Positions, velocities, step and time, in the user's order.
+    pub snapshot: &'a Snapshot,
+    /// Parameters at that moment.
+    pub params: &'a Params,
+    /// The energy ledger, where the run keeps one.
+    pub energy: Option<&'a Energy>,
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// The finished file.
+    pub path: PathBuf,
+    /// Its size.
+    pub bytes: u64,
+    /// Frames in it.
+    pub frames: u64,
+}
+
+/// An output being written. Dropped before [`finish`](Export::finish) it leaves nothing behind.
+pub trait Export {
+    /// Takes one frame.
+    ///
+    /// # Errors
+    /// [`sprung::Code::Unwritable`] if the disk is full or the file cannot be written.
+    fn frame(&mut self, frame: &Frame<'_>) -> Result<()>;
+
+    /// Completes the file with the whole frames taken so far and gives it its name.
+    /// `progress` hears the share done, 0 to 1, where there is still work to do.
+    ///
+    /// # Errors
+    /// As [`frame`](Export::frame).
+    fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written>;
+}
+
+/// A format: its ending, what it is, and how to begin a file of it.
+#[derive(Clone, Copy)]
+pub struct Exporter {
+    /// The ending of file names, without the dot.
+    pub ending: &'static str,
+    /// What the file holds, in a phrase.
+    pub description: &'static str,
+    /// Begins a file.
+    pub open: fn(&Path, &RunInfo, &Options) -> Result<Box<dyn Export>>,
+}
