@@ -94,7 +94,9 @@ impl Seek for PartialFile {
 /// The sentence for a file that cannot be written.
 pub fn write_error(path: &Path, error: &io::Error) -> Error {
     let sentence = match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "cannot be written: the disk is full".to_owned(),
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "cannot be written: the disk is full".to_owned()
+        }
         io::ErrorKind::NotFound => "cannot be written: its folder does not exist".to_owned(),
         io::ErrorKind::PermissionDenied => "cannot be written: permission denied".to_owned(),
         io::ErrorKind::IsADirectory => "cannot be written: it is a folder".to_owned(),

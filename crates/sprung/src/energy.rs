@@ -1,25 +1,38 @@
 //! The energy ledger: where the energy is, and where it went.
+//!
+//! In a step from state n to n + 1 a force F does the work F_n·(v_n + v_{n+1})·dt/2. Over all forces these works add up to
+//! the change of kinetic energy exactly, since v_{n+1} − v_n = dt·ΣF_n/m. What the integrator adds of its own is then
+//! the change of each potential plus the work of its force: computed, not what is left over. It halves with dt.
 
-/// Works summed over the steps taken while the ledger was on, J.
+use glam::DVec3;
+
+use crate::force::{self, Account, FORCES};
+use crate::model::Model;
+use crate::params::Params;
+use crate::state::State;
+
+/// Works summed since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LedgerSums {
-    /// Energy taken out by the springs' dampers.
-    pub lost_in_dampers: f64,
-    /// Energy taken out by contact.
-    pub lost_in_contact: f64,
-    /// Work put in by external forces, grabs and changes of the parameters.
+    /// Kinetic and potential energy at the start.
+    pub start: f64,
+    /// Work put in by external forces, grabs and changes of the parameters. Always kept.
     pub work_in: f64,
-    /// Energy that the integrator made (positive) or lost (negative).
+    /// Energy taken out by the springs' dampers, while the ledger is on.
+    pub lost_in_dampers: f64,
+    /// Energy taken out by contact, while the ledger is on.
+    pub lost_in_contact: f64,
+    /// Energy that the integrator made (positive) or lost (negative), while the ledger is on.
     pub integrator_error: f64,
 }
 
 /// Where the energy is at one moment, and where it went since the start, J.
 ///
-/// kinetic + gravitational + elastic + contact = their sum at the start + work_in − lost_in_dampers − lost_in_contact +
-/// integrator_error, to rounding.
+/// With the ledger on from the start, [`total`](Energy::total) = `sums.start` + `sums.work_in` − `sums.lost_in_dampers` −
+/// `sums.lost_in_contact` + `sums.integrator_error`, to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Σ ½mv².
+    /// Σ ½mv² over the points that can move.
     pub kinetic: f64,
     /// −Σ m g·x.
     pub gravitational: f64,
@@ -32,8 +45,100 @@ pub struct Energy {
 }
 
 impl Energy {
+    /// The energy of a state under some parameters.
+    pub fn of(model: &Model, params: &Params, state: &State) -> Self {
+        let mut energy = Self { kinetic: kinetic(params, state), sums: state.ledger, ..Self::default() };
+        for force in FORCES {
+            let potential = (force.potential)(model, params, state);
+            match force.name {
+                "gravity" => energy.gravitational += potential,
+                "contact" => energy.contact += potential,
+                _ => energy.elastic += potential,
+            }
+        }
+        energy
+    }
+
     /// Kinetic and all potential energy, J.
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravitational + self.elastic + self.contact
+    }
+}
+
+/// Σ ½mv² over the points that can move, J.
+pub(crate) fn kinetic(params: &Params, state: &State) -> f64 {
+    let masses = params.point_mass.iter().enumerate();
+    masses.map(|(point, &mass)| 0.5 * f64::from(mass) * state.velocity64(point).length_squared()).sum()
+}
+
+/// The works of one step. Holds the forces at its beginning until its end is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Ledger {
+    /// One entry per force that stores or loses the system's own energy: what it stored, and its two parts on each point.
+    accounts: Vec<(Account, f64, Vec<DVec3>, Vec<DVec3>)>,
+    velocity: Vec<DVec3>,
+}
+
+impl Ledger {
+    pub fn new(model: &Model) -> Self {
+        let zeros = vec![DVec3::ZERO; model.point_count()];
+        let accounts =
+            FORCES.iter().map(|force| (force.account, 0.0, zeros.clone(), zeros.clone())).collect();
+        Self { accounts, velocity: zeros }
+    }
+
+    /// Before a step: the forces, the potentials and the velocities it starts from.
+    pub fn begin(&mut self, model: &Model, params: &Params, state: &State) {
+        for (force, (_, potential, conservative, rest)) in FORCES.iter().zip(&mut self.accounts) {
+            conservative.fill(DVec3::ZERO);
+            rest.fill(DVec3::ZERO);
+            *potential = (force.potential)(model, params, state);
+            (force.parts)(model, params, state, conservative, rest);
+        }
+        for (point, velocity) in self.velocity.iter_mut().enumerate() {
+            *velocity = state.velocity64(point);
+        }
+    }
+
+    /// After it: every force's work, booked. `Drives` books what outside forces put in.
+    pub fn end(&mut self, model: &Model, params: &Params, state: &mut State) {
+        let half_dt = 0.5 * f64::from(params.dt as f32);
+        for (point, velocity) in self.velocity.iter_mut().enumerate() {
+            *velocity = (*velocity + state.velocity64(point)) * half_dt;
+        }
+        let work =
+            |forces: &[DVec3]| forces.iter().zip(&self.velocity).map(|(f, path)| f.dot(*path)).sum::<f64>();
+        let mut sums = state.ledger;
+        for (force, (account, potential, conservative, rest)) in FORCES.iter().zip(&self.accounts) {
+            sums.integrator_error += (force.potential)(model, params, state) - potential + work(conservative);
+            match account {
+                Account::Dampers => sums.lost_in_dampers -= work(rest),
+                Account::Contact => sums.lost_in_contact -= work(rest),
+                Account::WorkIn | Account::None => {}
+            }
+        }
+        state.ledger = sums;
+    }
+}
+
+/// The work that external forces and grabs put in, which is kept even while the ledger is off: they act on few points.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Drives {
+    /// Point, force on it and velocity at the beginning of the step.
+    driven: Vec<(usize, DVec3, DVec3)>,
+}
+
+impl Drives {
+    pub fn begin(&mut self, params: &Params, state: &State) {
+        self.driven.clear();
+        let forces = force::external::forces(params).chain(force::grab::forces(params, state));
+        self.driven.extend(forces.map(|(point, force)| (point, force, state.velocity64(point))));
+    }
+
+    pub fn end(&self, params: &Params, state: &mut State) {
+        let half_dt = 0.5 * f64::from(params.dt as f32);
+        for &(point, force, velocity) in &self.driven {
+            state.ledger.work_in += force.dot(velocity + state.velocity64(point)) * half_dt;
+        }
     }
 }

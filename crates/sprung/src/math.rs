@@ -19,18 +19,13 @@ pub(crate) fn distance(a: Vec3, b: Vec3) -> f32 {
     dot(e, e).sqrt()
 }
 
-/// Distance in float64, for energies and limits.
-#[inline(always)]
-pub(crate) fn distance64(a: DVec3, b: DVec3) -> f64 {
-    (a - b).length()
-}
-
 /// The rotation by `degrees` about `axis` (any length but zero), by Rodrigues' formula.
 /// `libm` rather than the system's sine: the same bits everywhere.
 pub(crate) fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     let u = axis / axis.length();
     let (sin, cos) = libm::sincos(degrees.to_radians());
-    let cross = DMat3::from_cols(DVec3::new(0.0, u.z, -u.y), DVec3::new(-u.z, 0.0, u.x), DVec3::new(u.y, -u.x, 0.0));
+    let cross =
+        DMat3::from_cols(DVec3::new(0.0, u.z, -u.y), DVec3::new(-u.z, 0.0, u.x), DVec3::new(u.y, -u.x, 0.0));
     let outer = DMat3::from_cols(u * u.x, u * u.y, u * u.z);
     DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos)
 }

@@ -142,7 +142,9 @@ impl Params {
         check_all("point_mass", &self.point_mass, check_mass)?;
         check_all("spring_stiffness", &self.spring_stiffness, |value| check_in("", value, &STIFFNESS_RANGE))?;
         check_all("spring_damping", &self.spring_damping, |value| check_in("", value, &DAMPING_RANGE))?;
-        check_all("spring_rest_length", &self.spring_rest_length, |value| check_in("", value, &LENGTH_RANGE))?;
+        check_all("spring_rest_length", &self.spring_rest_length, |value| {
+            check_in("", value, &LENGTH_RANGE)
+        })?;
         for (&point, &force) in &self.external_forces {
             check_index("external_forces", point, points)?;
             check_vector("external_forces", force)?;
@@ -272,7 +274,8 @@ fn check_range(field: &str, range: &Range<usize>, count: usize) -> Result<()> {
     if range.start <= range.end && range.end <= count {
         return Ok(());
     }
-    let sentence = format!("names indices {} to {}, and there are {count}", range.start, range.end.saturating_sub(1));
+    let sentence =
+        format!("names indices {} to {}, and there are {count}", range.start, range.end.saturating_sub(1));
     Err(Error::new(Code::OutOfRange, sentence).at_field(field))
 }
 
@@ -282,7 +285,13 @@ fn check_all(field: &str, values: &[f32], check: impl Fn(f32) -> Result<()>) -> 
     })
 }
 
-fn fill<T: Clone>(field: &str, values: &mut Arc<Vec<T>>, range: &Range<usize>, count: usize, value: T) -> Result<()> {
+fn fill<T: Clone>(
+    field: &str,
+    values: &mut Arc<Vec<T>>,
+    range: &Range<usize>,
+    count: usize,
+    value: T,
+) -> Result<()> {
     check_range(field, range, count)?;
     Arc::make_mut(values)[range.clone()].fill(value);
     Ok(())

@@ -1,32 +1,201 @@
 //! The simulation: model, parameters, state and solver bundled.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::error::Result;
-use crate::model::Model;
-use crate::params::Params;
-use crate::state::{Snapshot, State};
+use glam::Vec3;
 
-/// Model, parameters, state and solver bundled: reset, step, frame, settle, change a parameter, rewind, snapshot.
-#[derive(Clone, Debug)]
+use crate::energy::{self, Drives, Energy, Ledger};
+use crate::error::{Code, Error, Result};
+use crate::history::{DEFAULT_HISTORY_BYTES, Event, History};
+use crate::model::Model;
+use crate::params::{Change, Params, check_vector};
+use crate::settle::{SettleOptions, Settled};
+use crate::solver::SymplecticEuler;
+use crate::state::{Snapshot, State};
+use crate::watch::{self, Watch};
+use crate::workers::{Inline, Workers};
+
+/// Model, parameters, state and solver bundled: step, frame, settle, change a parameter, rewind, reset, snapshot.
+///
+/// ```
+/// use sprung::{Change, scene::Scene};
+///
+/// let mut simulation = Scene::builtin("jelly")?.simulation()?;
+/// for _ in 0..3 {
+///     simulation.frame()?; // `substeps` steps of `dt`
+/// }
+/// simulation.change(Change::Gravity(sprung::Vec3::ZERO))?;
+/// simulation.frame()?;
+/// println!("{}", simulation.snapshot().positions[0]);
+/// # Ok::<(), sprung::Error>(())
+/// ```
+#[derive(Clone)]
 pub struct Simulation {
     model: Arc<Model>,
     params: Params,
     state: State,
+    solver: SymplecticEuler,
+    workers: Arc<dyn Workers>,
+    watch: Watch,
+    history: History,
+    history_bytes: usize,
+    drives: Drives,
+    ledger: Option<Ledger>,
     snapshot: Snapshot,
 }
 
 impl Simulation {
-    /// Bundles the parts.
-    pub fn new(model: impl Into<Arc<Model>>, params: Params, state: State) -> Result<Self> {
+    /// Bundles a model, its parameters and a state to start from. Velocities of fixed points become zero.
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`] or [`Code::Conflict`] if a value is not allowed or the parts do not fit together.
+    pub fn new(model: impl Into<Arc<Model>>, params: Params, mut state: State) -> Result<Self> {
         let model = model.into();
         params.validate(&model)?;
-        Ok(Self { model, params, state, snapshot: Snapshot::default() })
+        check_state(&model, &state)?;
+        stop_fixed_points(&params, &mut state);
+        state.restart_clock();
+        state.ledger.start = Energy::of(&model, &params, &state).total();
+        Ok(Self {
+            solver: SymplecticEuler::new(&model, &params),
+            workers: Arc::new(Inline),
+            watch: Watch::new(&state, &params),
+            history: History::new(&state, &params, DEFAULT_HISTORY_BYTES),
+            history_bytes: DEFAULT_HISTORY_BYTES,
+            drives: Drives::default(),
+            ledger: None,
+            snapshot: Snapshot::default(),
+            model,
+            params,
+            state,
+        })
     }
 
-    /// One frame: `substeps` steps of `dt`.
-    pub fn frame(&mut self) -> Result<()> {
+    /// One step of length `dt` (s). A `dt` other than [`Params::dt`] is a [`Change::Dt`] first.
+    ///
+    /// # Errors
+    /// [`Code::BlewUp`] if the run blows up: the last good state is then the current one. [`Code::OutOfRange`] for `dt`.
+    pub fn step(&mut self, dt: f64) -> Result<()> {
+        if dt != self.params.dt {
+            self.change(Change::Dt(dt))?;
+        }
+        self.history.branch_at(self.state.step);
+        self.advance()?;
+        self.history.arrived(&self.state, &self.params);
         Ok(())
+    }
+
+    /// One frame: [`Params::substeps`] steps of [`Params::dt`].
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn frame(&mut self) -> Result<()> {
+        (0..self.params.substeps).try_for_each(|_| self.step(self.params.dt))
+    }
+
+    /// Brings the scene to rest by kinetic damping (Cundall 1976): it steps on, sets all velocities to zero whenever the
+    /// kinetic energy has passed a peak, and stops when no force beyond the residual remains. Neither step nor time go on.
+    ///
+    /// # Errors
+    /// [`Code::NotSettled`] after too many steps, [`Code::BlewUp`] if it blows up; the state is then as before.
+    pub fn settle(&mut self, options: SettleOptions) -> Result<Settled> {
+        self.settle_with(options, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`settle`](Self::settle); `progress` hears of every peak and may break off.
+    ///
+    /// # Errors
+    /// As [`settle`](Self::settle), and [`Code::Interrupted`] if `progress` broke off.
+    pub fn settle_with(
+        &mut self,
+        options: SettleOptions,
+        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
+    ) -> Result<Settled> {
+        self.history.branch_at(self.state.step);
+        let settled = self.settle_unlogged(options, progress)?;
+        self.history.record(self.state.step, Event::Settle(options));
+        Ok(settled)
+    }
+
+    /// Changes a parameter from this step on.
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`], and then nothing has changed.
+    pub fn change(&mut self, change: Change) -> Result<()> {
+        self.history.branch_at(self.state.step);
+        self.change_unlogged(&change)?;
+        self.history.record(self.state.step, Event::Change(change));
+        Ok(())
+    }
+
+    /// Goes to any step between the first and the newest, bit for bit, by replay from a checkpoint.
+    ///
+    /// What lies beyond is kept, and can be gone to, until something new is done.
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`] for a step that has not been recorded.
+    pub fn rewind_to(&mut self, step: u64) -> Result<()> {
+        let (first, newest) = (self.history.first().0.step, self.history.newest());
+        if !(first..=newest).contains(&step) {
+            let sentence = format!("step {step} is not recorded; steps {first} to {newest} are");
+            return Err(Error::new(Code::OutOfRange, sentence));
+        }
+        let (state, params) = self.history.before(step).clone();
+        self.restore(state, params);
+        self.redo_events()?;
+        while self.state.step < step {
+            self.advance()?;
+            self.redo_events()?;
+        }
+        Ok(())
+    }
+
+    /// Back to the first state and the first parameters, bit for bit. The log starts anew.
+    pub fn reset(&mut self) {
+        let (state, params) = self.history.first().clone();
+        self.history = History::new(&state, &params, self.history_bytes);
+        self.restore(state, params);
+    }
+
+    /// Positions and velocities now, in the user's order, in a buffer that is used again.
+    pub fn snapshot(&mut self) -> &Snapshot {
+        self.snapshot.fill(&self.state);
+        &self.snapshot
+    }
+
+    /// Where the energy is now, J, and where it went as far as the ledger was on.
+    pub fn energy(&self) -> Energy {
+        Energy::of(&self.model, &self.params, &self.state)
+    }
+
+    /// Switches the energy ledger on or off. While on, each step also sums every force's work in float64, at several
+    /// times the cost of the step. Motion is the same either way.
+    pub fn keep_ledger(&mut self, on: bool) {
+        self.ledger = on.then(|| Ledger::new(&self.model));
+    }
+
+    /// Bounds the memory for checkpoints, bytes, and starts the log anew from the current state. Zero keeps the first
+    /// state only.
+    pub fn keep_history(&mut self, bytes: usize) {
+        self.history_bytes = bytes;
+        self.history = History::new(&self.state, &self.params, bytes);
+    }
+
+    /// Lends the engine worker threads. However many there are, the bits are the same.
+    pub fn set_workers(&mut self, workers: Arc<dyn Workers>) {
+        self.workers = workers;
+    }
+
+    /// Whether energy has come from nowhere at this very step: it may be about to blow up, and whoever records should
+    /// hold this state back until a later one is found good.
+    pub fn is_suspect(&self) -> bool {
+        watch::excess(&self.model, &self.params, &self.state).is_some()
+    }
+
+    /// A fingerprint of positions, velocities and step: see [`State::hash`].
+    pub fn state_hash(&self) -> u64 {
+        self.state.hash()
     }
 
     /// What is joined to what.
@@ -39,9 +208,196 @@ impl Simulation {
         &self.params
     }
 
-    /// Positions and velocities now, in the user's order.
-    pub fn snapshot(&mut self) -> &Snapshot {
-        self.snapshot.fill(&self.state);
-        &self.snapshot
+    /// The state as it is now.
+    pub fn state(&self) -> &State {
+        &self.state
     }
+
+    /// What was done to this run and at which step, oldest first.
+    pub fn log(&self) -> &[(u64, Event)] {
+        self.history.log()
+    }
+
+    /// One step, watched; on a blow-up the last good state is restored and what came after it is forgotten.
+    fn advance(&mut self) -> Result<()> {
+        self.drives.begin(&self.params, &self.state);
+        if let Some(ledger) = &mut self.ledger {
+            ledger.begin(&self.model, &self.params, &self.state);
+        }
+        let finite = self.solver.step(&self.params, &mut self.state, &*self.workers);
+        self.drives.end(&self.params, &mut self.state);
+        if let Some(ledger) = &mut self.ledger {
+            ledger.end(&self.model, &self.params, &mut self.state);
+        }
+        match self.watch.look(&self.model, &self.params, &self.state, finite) {
+            None => Ok(()),
+            Some(blow_up) => {
+                let (state, params) = self.watch.good().clone();
+                self.restore(state, params);
+                self.history.branch_at(self.state.step);
+                self.redo_events()?;
+                Err(Error::from_blow_up(blow_up))
+            }
+        }
+    }
+
+    fn change_unlogged(&mut self, change: &Change) -> Result<()> {
+        let mut params = self.params.clone();
+        params.apply(&self.model, change)?;
+        let before = is_structural(change).then(|| self.energy().total());
+        self.params = params;
+        if matches!(change, Change::Dt(_)) {
+            self.state.restart_clock();
+        }
+        if matches!(change, Change::Mass(..) | Change::Pin(..)) {
+            stop_fixed_points(&self.params, &mut self.state);
+        }
+        if let Some(before) = before {
+            // What a change adds to the energy is work put in, not energy from nowhere.
+            self.state.ledger.work_in += self.energy().total() - before;
+            self.solver = SymplecticEuler::new(&self.model, &self.params);
+        }
+        Ok(())
+    }
+
+    fn settle_unlogged(
+        &mut self,
+        options: SettleOptions,
+        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
+    ) -> Result<Settled> {
+        let before = self.state.clone();
+        let settled = self.relax(options, progress);
+        if settled.is_err() {
+            self.state = before;
+            self.watch.restart(&self.state, &self.params);
+            return settled;
+        }
+        // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
+        let energy_before = Energy::of(&self.model, &self.params, &before).total();
+        self.state.step = before.step;
+        self.state.time = before.time;
+        self.state.clock = before.clock;
+        self.state.ledger = before.ledger;
+        self.state.ledger.work_in += self.energy().total() - energy_before;
+        self.watch.restart(&self.state, &self.params);
+        settled
+    }
+
+    fn relax(
+        &mut self,
+        options: SettleOptions,
+        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
+    ) -> Result<Settled> {
+        let allowed = options.residual_force.unwrap_or_else(|| default_residual(&self.params));
+        let mut kinetic_before = 0.0;
+        stop(&mut self.state);
+        let mut residual_force = self.solver.residual_force(&self.params, &self.state, &*self.workers);
+        for steps in 0..=options.max_steps {
+            if residual_force <= allowed {
+                return Ok(Settled { steps, residual_force });
+            }
+            let finite = self.solver.step(&self.params, &mut self.state, &*self.workers);
+            if !finite {
+                return Err(Error::from_blow_up(self.watch.not_finite(
+                    &self.model,
+                    &self.params,
+                    &self.state,
+                )));
+            }
+            let kinetic = energy::kinetic(&self.params, &self.state);
+            if kinetic < kinetic_before {
+                stop(&mut self.state);
+                residual_force = self.solver.residual_force(&self.params, &self.state, &*self.workers);
+                kinetic_before = 0.0;
+                if progress(Settled { steps, residual_force }).is_break() {
+                    return Err(Error::new(Code::Interrupted, "settling was interrupted"));
+                }
+            } else {
+                kinetic_before = kinetic;
+            }
+        }
+        let sentence = format!(
+            "the scene did not come to rest: after {} steps a force of {residual_force:.3e} N remains, over the {allowed:.3e} N \
+             allowed",
+            options.max_steps
+        );
+        Err(Error::new(Code::NotSettled, sentence).with_fix("allow a larger residual force or more steps"))
+    }
+
+    fn restore(&mut self, state: State, params: Params) {
+        if params != self.params {
+            self.params = params;
+            self.solver = SymplecticEuler::new(&self.model, &self.params);
+        }
+        self.state = state;
+        self.watch.restart(&self.state, &self.params);
+    }
+
+    /// Does again what the log says was done at the current step.
+    fn redo_events(&mut self) -> Result<()> {
+        for event in self.history.events_at(self.state.step) {
+            match event {
+                Event::Change(change) => self.change_unlogged(&change)?,
+                Event::Settle(options) => {
+                    self.settle_unlogged(options, &mut |_| ControlFlow::Continue(()))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (points, springs) = (self.model.point_count(), self.model.spring_count());
+        write!(f, "Simulation({points} points, {springs} springs, step {})", self.state.step)
+    }
+}
+
+/// Whether a change can alter the energy of the current state, or what the solver has packed.
+fn is_structural(change: &Change) -> bool {
+    use Change::{Cut, Damping, Gravity, Mass, Pin, Planes, RestScale, Stiffness};
+    matches!(
+        change,
+        Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | Damping(..) | RestScale(..) | Cut(..)
+    )
+}
+
+/// A thousandth of the largest weight, N.
+fn default_residual(params: &Params) -> f64 {
+    let largest = params.point_mass.iter().fold(0.0f32, |max, &mass| max.max(mass));
+    let weight = f64::from(largest) * params.gravity.as_dvec3().length();
+    if weight > 0.0 { 1e-3 * weight } else { 1e-3 }
+}
+
+fn stop(state: &mut State) {
+    state.velocity.fill(Vec3::ZERO);
+    state.velocity_low.fill(Vec3::ZERO);
+}
+
+fn stop_fixed_points(params: &Params, state: &mut State) {
+    for point in (0..state.velocity.len()).filter(|&point| params.is_fixed(point)) {
+        state.velocity[point] = Vec3::ZERO;
+        state.velocity_low[point] = Vec3::ZERO;
+    }
+}
+
+fn check_state(model: &Model, state: &State) -> Result<()> {
+    let arrays = [
+        ("position", &state.position),
+        ("position_low", &state.position_low),
+        ("velocity", &state.velocity),
+        ("velocity_low", &state.velocity_low),
+    ];
+    for (field, array) in arrays {
+        if array.len() != model.point_count() {
+            let sentence =
+                format!("has {} entries, and the model has {} points", array.len(), model.point_count());
+            return Err(Error::new(Code::Conflict, sentence).at_field(field));
+        }
+        for (point, &vector) in array.iter().enumerate() {
+            check_vector("", vector).map_err(|error| error.at_field(format!("{field}[{point}]")))?;
+        }
+    }
+    Ok(())
 }

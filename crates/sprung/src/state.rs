@@ -24,6 +24,8 @@ pub struct State {
     pub velocity_low: Vec<Vec3>,
     /// Works done since the start, as far as the ledger is switched on.
     pub ledger: LedgerSums,
+    /// Step and time since which dt has not changed: time is their sum with whole steps, not a running sum that drifts.
+    pub(crate) clock: (u64, f64),
 }
 
 impl State {
@@ -38,7 +40,19 @@ impl State {
             velocity,
             velocity_low: low,
             ledger: LedgerSums::default(),
+            clock: (0, 0.0),
         }
+    }
+
+    /// One step of `dt` (s) has passed.
+    pub(crate) fn tick(&mut self, dt: f64) {
+        self.step += 1;
+        self.time = self.clock.1 + (self.step - self.clock.0) as f64 * dt;
+    }
+
+    /// From here on steps have another length.
+    pub(crate) fn restart_clock(&mut self) {
+        self.clock = (self.step, self.time);
     }
 
     /// A fingerprint of positions, velocities and step, the same on every machine.
@@ -81,7 +95,7 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Copies a state into this buffer.
-    pub(crate) fn fill(&mut self, state: &State) {
+    pub fn fill(&mut self, state: &State) {
         self.step = state.step;
         self.time = state.time;
         self.positions.clone_from(&state.position);

@@ -90,7 +90,10 @@ impl ModelBuilder {
             return Err(Error::new(Code::Duplicate, format!("the name \"{name}\" is used by two bodies")));
         }
         if !self.joints.is_empty() {
-            return Err(Error::new(Code::Conflict, format!("body \"{name}\" comes after a joint; bodies come first")));
+            return Err(Error::new(
+                Code::Conflict,
+                format!("body \"{name}\" comes after a joint; bodies come first"),
+            ));
         }
         let (points, springs) = (self.position.len(), self.springs.len());
         self.bodies.push(Body { name, points: points..points, springs: springs..springs });
@@ -184,16 +187,20 @@ impl ModelBuilder {
     ///
     /// # Errors
     /// [`Code::OutOfRange`] for a radius that is negative or not finite, [`Code::TooLarge`] if it would make too many.
-    pub fn connect_within(&mut self, points: Range<usize>, radius: f32, material: Material) -> Result<Range<usize>> {
+    pub fn connect_within(
+        &mut self,
+        points: Range<usize>,
+        radius: f32,
+        material: Material,
+    ) -> Result<Range<usize>> {
         check_material(material)?;
         if points.start > points.end || points.end > self.position.len() {
             let sentence = format!("points {}..{} are not all there", points.start, points.end);
             return Err(Error::new(Code::NotFound, sentence));
         }
         let allowed = self.spring_limit().saturating_sub(self.springs.len());
-        let pairs = pairs_within(&self.position[points.clone()], radius, allowed)?.ok_or_else(|| {
-            self.too_many_springs().at_field("radius")
-        })?;
+        let pairs = pairs_within(&self.position[points.clone()], radius, allowed)?
+            .ok_or_else(|| self.too_many_springs().at_field("radius"))?;
         self.ensure_body()?;
         let first = self.springs.len();
         for list in [&mut self.rest_length, &mut self.stiffness, &mut self.damping] {
@@ -309,7 +316,8 @@ impl ModelBuilder {
         if point < self.position.len() {
             return Ok(());
         }
-        let sentence = format!("there is no point {point}; points are 0 to {}", self.position.len().saturating_sub(1));
+        let sentence =
+            format!("there is no point {point}; points are 0 to {}", self.position.len().saturating_sub(1));
         Err(Error::new(Code::NotFound, sentence))
     }
 

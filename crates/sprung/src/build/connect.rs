@@ -35,7 +35,8 @@ pub fn pairs_within(positions: &[Vec3], radius: f32, limit: usize) -> Result<Opt
         let here = position.as_dvec3();
         for row in grid.rows_around(position) {
             for &j in row {
-                if j as usize > i && positions[j as usize].as_dvec3().distance_squared(here) <= reach_squared {
+                if j as usize > i && positions[j as usize].as_dvec3().distance_squared(here) <= reach_squared
+                {
                     partners.push(j);
                 }
             }
@@ -70,7 +71,8 @@ impl CellGrid {
     fn new(positions: &[Vec3], reach: f64) -> Self {
         let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
         let high = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-        let extent = if positions.is_empty() { [0.0; 3] } else { (high.as_dvec3() - low.as_dvec3()).to_array() };
+        let extent =
+            if positions.is_empty() { [0.0; 3] } else { (high.as_dvec3() - low.as_dvec3()).to_array() };
 
         // Larger cells where the reach is small against the extent, so that there are not many more cells than points.
         let most_cells = (2 * positions.len()).max(64) as f64;
@@ -81,8 +83,10 @@ impl CellGrid {
         }
         let counts = count_along(size).map(|count| count as usize);
 
-        let mut grid = Self { origin: low, inverse_size: 1.0 / size, counts, starts: Vec::new(), points: Vec::new() };
-        let cells: Vec<u32> = positions.iter().map(|&position| grid.flat(grid.cell(position)) as u32).collect();
+        let mut grid =
+            Self { origin: low, inverse_size: 1.0 / size, counts, starts: Vec::new(), points: Vec::new() };
+        let cells: Vec<u32> =
+            positions.iter().map(|&position| grid.flat(grid.cell(position)) as u32).collect();
         // Counting sort by cell.
         let mut starts = vec![0u32; counts.iter().product::<usize>() + 1];
         for &cell in &cells {
@@ -115,7 +119,8 @@ impl CellGrid {
     /// The points of the 27 cells around a position, as up to nine rows of neighbouring cells along z.
     fn rows_around(&self, position: Vec3) -> impl Iterator<Item = &[u32]> {
         let [x, y, z] = self.cell(position);
-        let around = |centre: usize, axis: usize| centre.saturating_sub(1)..=(centre + 1).min(self.counts[axis] - 1);
+        let around =
+            |centre: usize, axis: usize| centre.saturating_sub(1)..=(centre + 1).min(self.counts[axis] - 1);
         let along_z = around(z, 2);
         let (first, last) = (*along_z.start(), *along_z.end());
         around(x, 0).flat_map(move |x| around(y, 1).map(move |y| (x, y))).map(move |(x, y)| {

@@ -1,0 +1,44 @@
+//! Contact with colliders; their shapes and laws are in [`contact`](crate::contact).
+
+use glam::{DVec3, Vec3};
+
+use super::{Account, Force};
+use crate::model::Model;
+use crate::params::Params;
+use crate::state::State;
+
+pub(crate) const FORCE: Force = Force {
+    name: "contact",
+    description: "planes that push points back out",
+    formula: "f_i = (k_c p − k_c,d v_i·n) n while the depth p = (point − x_i)·n > 0; under the law \"push\" never a pull",
+    account: Account::Contact,
+    potential,
+    parts,
+};
+
+pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
+    for plane in &params.planes {
+        for (point, force) in forces.iter_mut().enumerate() {
+            *force += plane.force(state.position[point], state.velocity[point]);
+        }
+    }
+}
+
+/// Σ ½k_c·p² over the touching points that can move, J.
+fn potential(_: &Model, params: &Params, state: &State) -> f64 {
+    let free = |&point: &usize| !params.is_fixed(point);
+    let of_plane = |plane: &crate::contact::Plane| -> f64 {
+        (0..state.position.len()).filter(free).map(|point| plane.potential(state.position64(point))).sum()
+    };
+    params.planes.iter().map(of_plane).sum()
+}
+
+fn parts(_: &Model, params: &Params, state: &State, conservative: &mut [DVec3], rest: &mut [DVec3]) {
+    for plane in &params.planes {
+        for point in (0..conservative.len()).filter(|&point| !params.is_fixed(point)) {
+            let (spring, other) = plane.force_parts(state.position64(point), state.velocity64(point));
+            conservative[point] += spring;
+            rest[point] += other;
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! Constant forces on single points.
+
+use glam::{DVec3, Vec3};
+
+use super::{Account, Force};
+use crate::model::Model;
+use crate::params::Params;
+use crate::state::State;
+
+pub(crate) const FORCE: Force = Force {
+    name: "external",
+    description: "constant forces on single points",
+    formula: "f_i = F_i",
+    account: Account::WorkIn,
+    potential: |_, _, _| 0.0,
+    parts,
+};
+
+pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
+    for (&point, &force) in &params.external_forces {
+        forces[point] += force;
+    }
+}
+
+/// The pushed points and the forces on them, in float64.
+pub(crate) fn forces(params: &Params) -> impl Iterator<Item = (usize, DVec3)> {
+    params.external_forces.iter().map(|(&point, &force)| (point, force.as_dvec3()))
+}
+
+fn parts(_: &Model, params: &Params, _: &State, _: &mut [DVec3], rest: &mut [DVec3]) {
+    forces(params).for_each(|(point, force)| rest[point] += force);
+}

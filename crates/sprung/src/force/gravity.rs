@@ -1,0 +1,37 @@
+//! Gravity: the same acceleration for every point.
+
+use glam::{DVec3, Vec3};
+
+use super::{Account, Force};
+use crate::model::Model;
+use crate::params::Params;
+use crate::state::State;
+
+pub(crate) const FORCE: Force = Force {
+    name: "gravity",
+    description: "the same acceleration for every point",
+    formula: "f_i = m_i g",
+    account: Account::None,
+    potential,
+    parts,
+};
+
+pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
+    for (force, &mass) in forces.iter_mut().zip(params.point_mass.iter()) {
+        *force += params.gravity * mass;
+    }
+}
+
+/// −Σ m g·x, J.
+fn potential(_: &Model, params: &Params, state: &State) -> f64 {
+    let gravity = params.gravity.as_dvec3();
+    let masses = params.point_mass.iter().enumerate();
+    -masses.map(|(point, &mass)| f64::from(mass) * gravity.dot(state.position64(point))).sum::<f64>()
+}
+
+fn parts(_: &Model, params: &Params, _: &State, conservative: &mut [DVec3], _: &mut [DVec3]) {
+    let gravity = params.gravity.as_dvec3();
+    for (force, &mass) in conservative.iter_mut().zip(params.point_mass.iter()) {
+        *force += gravity * f64::from(mass);
+    }
+}

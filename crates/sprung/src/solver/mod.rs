@@ -1,0 +1,5 @@
+//! Integrators, one file each.
+
+mod symplectic_euler;
+
+pub use symplectic_euler::SymplecticEuler;
