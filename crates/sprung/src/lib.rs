@@ -14,6 +14,7 @@ mod math;
 mod model;
 pub mod params;
 mod settle;
+pub mod scene;
 mod simulation;
 pub mod solver;
 pub mod stability;

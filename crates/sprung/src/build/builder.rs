@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::connect::pairs_within;
+use super::connect::{pairs_between, pairs_within};
 use crate::error::{Code, Error, Result};
 use crate::math::distance;
 use crate::model::{Body, Joint, Model, Surface, SurfaceKind};
@@ -78,6 +78,18 @@ impl ModelBuilder {
     /// Allows up to `max_springs` springs instead of 20 million.
     pub fn allow_springs(&mut self, max_springs: usize) {
         self.max_springs = Some(max_springs);
+    }
+
+    /// Makes room for so many more points and springs, so that a large model is built without copying as it grows.
+    pub fn reserve(&mut self, points: usize, springs: usize) {
+        self.position.reserve_exact(points);
+        self.velocity.reserve_exact(points);
+        self.mass.reserve_exact(points);
+        self.pinned.reserve_exact(points);
+        self.springs.reserve_exact(springs);
+        for list in [&mut self.rest_length, &mut self.stiffness, &mut self.damping] {
+            list.reserve_exact(springs);
+        }
     }
 
     /// Begins a body: points and springs added from here on belong to it.
@@ -203,13 +215,45 @@ impl ModelBuilder {
             .ok_or_else(|| self.too_many_springs().at_field("radius"))?;
         self.ensure_body()?;
         let first = self.springs.len();
-        for list in [&mut self.rest_length, &mut self.stiffness, &mut self.damping] {
-            list.reserve_exact(pairs.len());
-        }
-        self.springs.reserve_exact(pairs.len());
+        self.reserve(0, pairs.len());
         let offset = points.start as u32;
         for [i, j] in pairs {
             self.push_spring([i + offset, j + offset], material);
+        }
+        Ok(first..self.springs.len())
+    }
+
+    /// Joins every point of `a` to every point of `b` that is no further away than `radius` (m), and none within `a` or
+    /// within `b`; the ranges must not overlap. Gives the range of springs made.
+    ///
+    /// # Errors
+    /// As [`connect_within`](Self::connect_within), and [`Code::Conflict`] for ranges that overlap.
+    pub fn connect_between(
+        &mut self,
+        a: Range<usize>,
+        b: Range<usize>,
+        radius: f32,
+        material: Material,
+    ) -> Result<Range<usize>> {
+        check_material(material)?;
+        for range in [&a, &b] {
+            if range.start > range.end || range.end > self.position.len() {
+                let sentence = format!("points {}..{} are not all there", range.start, range.end);
+                return Err(Error::new(Code::NotFound, sentence));
+            }
+        }
+        if a.start < b.end && b.start < a.end {
+            return Err(Error::new(Code::Conflict, "the two sets of points overlap"));
+        }
+        let allowed = self.spring_limit().saturating_sub(self.springs.len());
+        let (here, there) = (&self.position[a.clone()], &self.position[b.clone()]);
+        let pairs = pairs_between(here, there, radius, allowed)?
+            .ok_or_else(|| self.too_many_springs().at_field("radius"))?;
+        self.reserve(0, pairs.len());
+        let first = self.springs.len();
+        for [i, j] in pairs {
+            let (i, j) = (i + a.start as u32, j + b.start as u32);
+            self.push_spring([i.min(j), i.max(j)], material);
         }
         Ok(first..self.springs.len())
     }
@@ -247,7 +291,14 @@ impl ModelBuilder {
     ///
     /// # Errors
     /// [`Code::Conflict`] for a builder without points.
-    pub fn build(mut self) -> Result<(Model, Params, State)> {
+    pub fn build(self) -> Result<(Model, Params, State)> {
+        let (model, mut params, state) = self.parts()?;
+        params.dt = stability::auto_dt(&model, &params);
+        Ok((model, params, state))
+    }
+
+    /// As [`build`](Self::build), but leaves `dt` at 0.01 s: for a caller who sets it, which spares the search for a safe one.
+    pub(crate) fn parts(mut self) -> Result<(Model, Params, State)> {
         if self.position.is_empty() {
             return Err(Error::new(Code::Conflict, "there are no points; a model needs at least one"));
         }
@@ -264,7 +315,7 @@ impl ModelBuilder {
             joints: self.joints,
             surfaces: self.surfaces,
         };
-        let mut params = Params {
+        let params = Params {
             dt: 0.01,
             substeps: 1,
             gravity: Vec3::new(0.0, -9.81, 0.0),
@@ -278,7 +329,6 @@ impl ModelBuilder {
             external_forces: Default::default(),
             grabs: Vec::new(),
         };
-        params.dt = stability::auto_dt(&model, &params);
         Ok((model, params, State::new(self.position, self.velocity)))
     }
 

@@ -50,6 +50,36 @@ pub fn pairs_within(positions: &[Vec3], radius: f32, limit: usize) -> Result<Opt
     Ok(Some(pairs))
 }
 
+/// All pairs [i, j] of a position `a[i]` and a position `b[j]` (m) that are no further apart than `radius` (m), in the
+/// order of the double loop `for i { for j { .. } }`, with the comparison of [`pairs_within`]. `None` if there are more
+/// than `limit`.
+///
+/// # Errors
+/// [`Code::OutOfRange`](crate::Code::OutOfRange) for a radius that is negative or not finite.
+pub fn pairs_between(a: &[Vec3], b: &[Vec3], radius: f32, limit: usize) -> Result<Option<Vec<[u32; 2]>>> {
+    check_in("radius", radius, &LENGTH_RANGE)?;
+    let reach = reach(a, radius).max(reach(b, radius));
+    let grid = CellGrid::new(b, reach);
+
+    let mut pairs = Vec::new();
+    let mut partners = Vec::new();
+    for (i, &position) in a.iter().enumerate() {
+        // A position outside the grid looks around the nearest cell of its border, as near as any partner can be.
+        partners.clear();
+        let here = position.as_dvec3();
+        for row in grid.rows_around(position) {
+            let near = |j: &u32| b[*j as usize].as_dvec3().distance_squared(here) <= reach * reach;
+            partners.extend(row.iter().copied().filter(near));
+            if pairs.len() + partners.len() > limit {
+                return Ok(None);
+            }
+        }
+        partners.sort_unstable();
+        pairs.extend(partners.iter().map(|&j| [i as u32, j]));
+    }
+    Ok(Some(pairs))
+}
+
 /// The radius with an allowance for the rounding of coordinates and of the radius itself to float32.
 fn reach(positions: &[Vec3], radius: f32) -> f64 {
     let largest = positions.iter().fold(0.0f32, |max, position| max.max(position.abs().max_element()));
@@ -164,6 +194,28 @@ mod tests {
                 let found = pairs_within(&points, radius, usize::MAX).expect("the radius is allowed");
                 prop_assert_eq!(found, Some(double_loop(&points, radius)));
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn pairs_between_are_those_of_the_double_loop(
+            a in prop::collection::vec(prop::array::uniform3(-8i32..8), 0..60),
+            b in prop::collection::vec(prop::array::uniform3(-3i32..12), 0..60),
+            radius in 0i32..6,
+        ) {
+            let points = |list: &[[i32; 3]]| list.iter().map(|p| Vec3::from_array(p.map(|c| c as f32))).collect::<Vec<_>>();
+            let (a, b) = (points(&a), points(&b));
+            let mut double_loop = Vec::new();
+            for i in 0..a.len() {
+                for j in 0..b.len() {
+                    if a[i].distance_squared(b[j]) <= (radius * radius) as f32 {
+                        double_loop.push([i as u32, j as u32]);
+                    }
+                }
+            }
+            let found = pairs_between(&a, &b, radius as f32, usize::MAX).expect("the radius is allowed");
+            prop_assert_eq!(found, Some(double_loop));
         }
     }
 

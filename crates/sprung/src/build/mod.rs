@@ -2,6 +2,8 @@
 
 mod builder;
 mod connect;
+mod lattice;
 
 pub use builder::{DEFAULT_MAX_SPRINGS, Material, ModelBuilder};
-pub use connect::pairs_within;
+pub use connect::{pairs_between, pairs_within};
+pub use lattice::{Lattice, Side, SpringKind};

@@ -1,0 +1,315 @@
+//! From a scene to model, params and first state.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::check::{MAX_POINTS, check};
+use super::choices::{Dt, OneOrEach, Pin};
+use super::types::{Body, Joint, Plane, Scene, Springs};
+use crate::build::{Material, ModelBuilder};
+use crate::contact;
+use crate::error::{Code, Error, Result};
+use crate::math::rotation;
+use crate::model::Model;
+use crate::params::{LENGTH_RANGE, MAGNITUDE_RANGE, Params};
+use crate::stability;
+use crate::state::State;
+
+impl Scene {
+    /// Builds model, params and first state.
+    ///
+    /// # Errors
+    /// Names the field, and the line where the scene was read from a text: all that [`parse`](Self::parse) checks (the
+    /// fields may have been changed since), a box that holds no point, points too far out, too many springs.
+    pub fn build(&self) -> Result<(Model, Params, State)> {
+        self.build_within(MAX_POINTS, self.spring_limit())
+    }
+
+    /// As [`build`](Self::build), but with at most so many points and springs, whatever the scene allows: for a caller
+    /// who wants a bound on work and memory.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn build_within(&self, max_points: u64, max_springs: u64) -> Result<(Model, Params, State)> {
+        check(self, max_points.min(MAX_POINTS))
+            .and_then(|()| Assembly::new(self, max_springs.min(self.spring_limit())).build())
+            .map_err(|error| self.origin.locate(error))
+    }
+}
+
+/// A scene being built.
+struct Assembly<'a> {
+    scene: &'a Scene,
+    max_springs: u64,
+    builder: ModelBuilder,
+    /// The points of each body, as it is finished.
+    bodies: Vec<Range<usize>>,
+    /// Springs whose rest length is a multiple of the one they are built with.
+    rest_scales: Vec<(Range<usize>, f32)>,
+}
+
+impl<'a> Assembly<'a> {
+    fn new(scene: &'a Scene, max_springs: u64) -> Self {
+        let mut builder = ModelBuilder::new();
+        builder.allow_springs(usize::try_from(max_springs).unwrap_or(usize::MAX));
+        Self { scene, max_springs, builder, bodies: Vec::new(), rest_scales: Vec::new() }
+    }
+
+    fn build(mut self) -> Result<(Model, Params, State)> {
+        self.refuse_too_many_springs()?;
+        let points = usize::try_from(self.scene.point_count()).unwrap_or(usize::MAX);
+        self.builder.reserve(points, 0);
+        for (index, body) in self.scene.bodies.iter().enumerate() {
+            self.add_body(&format!("body[{index}]"), body)?;
+        }
+        for (index, joint) in self.scene.joints.iter().enumerate() {
+            self.add_joint(&format!("joint[{index}]"), joint)?;
+        }
+
+        let (model, mut params, state) = self.builder.parts()?;
+        params.substeps = self.scene.substeps;
+        params.gravity = vec3(self.scene.gravity);
+        params.planes = self.scene.planes.iter().map(plane).collect();
+        let rest_length = Arc::make_mut(&mut params.spring_rest_length);
+        for (springs, scale) in self.rest_scales {
+            for length in &mut rest_length[springs] {
+                *length = (*length * scale).min(*LENGTH_RANGE.end());
+            }
+        }
+        params.dt = match self.scene.dt {
+            Dt::Seconds(dt) => dt,
+            Dt::Auto => stability::auto_dt(&model, &params),
+        };
+        params.validate(&model)?;
+        Ok((model, params, state))
+    }
+
+    /// Counts the springs of lattices before any memory is asked for.
+    fn refuse_too_many_springs(&self) -> Result<()> {
+        let mut sum = 0u64;
+        for (index, body) in self.scene.bodies.iter().enumerate() {
+            for (group, springs) in body.springs.iter().enumerate() {
+                sum = sum.saturating_add(body.fewest_springs(springs, self.max_springs));
+                if sum > self.max_springs {
+                    let key = if springs.radius.is_some() { ".radius" } else { "" };
+                    return Err(too_many_springs(
+                        self.max_springs,
+                        format!("body[{index}].springs[{group}]{key}"),
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_body(&mut self, path: &str, body: &Body) -> Result<()> {
+        let at = |error: Error| replaced(error, path);
+        self.builder.begin_body(&body.name).map_err(at)?;
+        let first = self.builder.point_count();
+        let placement = Placement::new(body);
+        let masses = match body.body_mass {
+            Some(total) => OneOrEach::One(total / body.point_count() as f64),
+            None => body.point_mass.clone().unwrap_or(OneOrEach::One(1.0)),
+        };
+        let shape = body.shape();
+        let from_lattice =
+            shape.iter().flat_map(|lattice| lattice.positions()).map(|p| body.shape_origin() + p);
+        let explicit = body.points.iter().flatten().map(|&point| DVec3::from_array(point));
+        for (index, local) in from_lattice.chain(explicit).enumerate() {
+            let position = placement.world(local);
+            if !position.to_array().iter().all(|coordinate| MAGNITUDE_RANGE.contains(coordinate)) {
+                let sentence =
+                    format!("puts point {index} at {position} m, and coordinates must be from -1e9 to 1e9 m");
+                return Err(Error::new(Code::OutOfRange, sentence).at_field(path));
+            }
+            let point = self.builder.add_point(position, masses.of(index) as f32).map_err(at)?;
+            self.builder.set_velocity(point, vec3(body.velocity.of(index))).map_err(at)?;
+        }
+        let points = first..self.builder.point_count();
+        for (index, pin) in body.pins.iter().enumerate() {
+            self.pin(&format!("{path}.pins[{index}]"), body, &points, pin)?;
+        }
+        for (index, springs) in body.springs.iter().enumerate() {
+            self.add_springs(&format!("{path}.springs[{index}]"), body, &points, springs)?;
+        }
+        if let Some((kind, mut triangles)) = shape.and_then(|lattice| lattice.surface()) {
+            triangles.iter_mut().flatten().for_each(|corner| *corner += first as u32);
+            self.builder.add_surface(kind, triangles).map_err(at)?;
+        }
+        self.bodies.push(points);
+        Ok(())
+    }
+
+    fn pin(&mut self, path: &str, body: &Body, points: &Range<usize>, pin: &Pin) -> Result<()> {
+        let chosen: Vec<usize> = match pin {
+            Pin::Index(index) => vec![points.start + *index as usize],
+            Pin::Side(name) => {
+                let shape = body.shape();
+                let side = shape.as_ref().and_then(|lattice| Some(lattice.side_points(lattice.side(name)?)));
+                side.into_iter().flatten().map(|index| points.start + index as usize).collect()
+            }
+            Pin::Box(pin) => {
+                let (min, max) = (vec3(pin.region.min), vec3(pin.region.max));
+                let inside = |point: &usize| {
+                    let position = self.builder.position(*point);
+                    position.cmpge(min).all() && position.cmple(max).all()
+                };
+                points.clone().filter(inside).collect()
+            }
+        };
+        if chosen.is_empty() {
+            let sentence = format!("contains no point of \"{}\"", body.name);
+            let error =
+                Error::new(Code::NotFound, sentence).with_fix("the box is in the coordinates of the world");
+            return Err(error.at_field(format!("{path}.box")));
+        }
+        chosen
+            .into_iter()
+            .try_for_each(|point| self.builder.pin(point))
+            .map_err(|error| replaced(error, path))
+    }
+
+    fn add_springs(
+        &mut self,
+        path: &str,
+        body: &Body,
+        points: &Range<usize>,
+        springs: &Springs,
+    ) -> Result<()> {
+        let material = material(springs.stiffness, springs.damping);
+        let first = self.builder.spring_count();
+        let at = |error: Error| replaced(error, path);
+        if let Some(radius) = springs.radius {
+            let made = self.builder.connect_within(points.clone(), radius as f32, material);
+            made.map_err(|error| self.explained(error, format!("{path}.radius")))?;
+        }
+        if let (Some(kinds), Some(lattice)) = (&springs.kinds, body.shape()) {
+            for &kind in kinds {
+                self.builder.reserve(0, lattice.pair_count(kind) as usize);
+                for [i, j] in lattice.pairs(kind) {
+                    self.builder
+                        .add_spring(points.start + i as usize, points.start + j as usize, material)
+                        .map_err(at)?;
+                }
+            }
+        }
+        if let Some(pairs) = &springs.pairs {
+            self.add_pairs(path, pairs, [points.start, points.start], springs.rest_length, material)?;
+        }
+        self.rest_scales.push((first..self.builder.spring_count(), springs.rest_scale as f32));
+        Ok(())
+    }
+
+    fn add_joint(&mut self, path: &str, joint: &Joint) -> Result<()> {
+        let body = |name: &String| self.scene.bodies.iter().position(|body| body.name == *name);
+        let (Some(a), Some(b)) = (body(&joint.between[0]), body(&joint.between[1])) else {
+            return Err(Error::new(Code::NotFound, "joins a body that is not there").at_field(path));
+        };
+        let (a, b) = (self.bodies[a].clone(), self.bodies[b].clone());
+        let material = material(joint.stiffness, joint.damping);
+        self.builder.begin_joint(joint.between.join(" - "));
+        let first = self.builder.spring_count();
+        if let Some(radius) = joint.radius {
+            let made = self.builder.connect_between(a.clone(), b.clone(), radius as f32, material);
+            made.map_err(|error| self.explained(error, format!("{path}.radius")))?;
+            if self.builder.spring_count() == first {
+                let sentence = format!("is {radius} m, and no points of the two bodies are that near");
+                return Err(Error::new(Code::NotFound, sentence).at_field(format!("{path}.radius")));
+            }
+        }
+        if let Some(pairs) = &joint.pairs {
+            self.add_pairs(path, pairs, [a.start, b.start], joint.rest_length, material)?;
+        }
+        self.rest_scales.push((first..self.builder.spring_count(), joint.rest_scale as f32));
+        Ok(())
+    }
+
+    fn add_pairs(
+        &mut self,
+        path: &str,
+        pairs: &[[u32; 2]],
+        starts: [usize; 2],
+        rest_length: Option<f64>,
+        material: Material,
+    ) -> Result<()> {
+        for (index, &[i, j]) in pairs.iter().enumerate() {
+            let field = format!("{path}.pairs[{index}]");
+            let spring = self
+                .builder
+                .add_spring(starts[0] + i as usize, starts[1] + j as usize, material)
+                .map_err(|error| self.explained(error, field))?;
+            if let Some(length) = rest_length {
+                self.builder.set_rest_length(spring, length as f32).map_err(|error| replaced(error, path))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn explained(&self, error: Error, field: String) -> Error {
+        match error.code() {
+            Code::TooLarge => too_many_springs(self.max_springs, field),
+            _ => replaced(error, &field),
+        }
+    }
+}
+
+fn too_many_springs(limit: u64, field: String) -> Error {
+    Error::new(Code::TooLarge, format!("brings the scene to more than {limit} springs"))
+        .with_fix("make the radius smaller or the points fewer, or allow more with max_springs at the top of the scene")
+        .at_field(field)
+}
+
+/// The builder's error, with the scene's field instead of the builder's.
+fn replaced(error: Error, field: &str) -> Error {
+    let moved = Error::new(error.code(), error.sentence()).at_field(field);
+    match error.fix() {
+        Some(fix) => moved.with_fix(fix),
+        None => moved,
+    }
+}
+
+/// Scaled, then rotated, then moved: in float64, rounded once.
+struct Placement {
+    scale: f64,
+    rotation: Option<DMat3>,
+    position: DVec3,
+}
+
+impl Placement {
+    fn new(body: &Body) -> Self {
+        let turned = |turn: &super::types::Rotation| {
+            // Brought to a sensible length first, so that squaring it neither overflows nor vanishes.
+            let axis = DVec3::from_array(turn.axis);
+            rotation(axis / axis.abs().max_element(), turn.degrees)
+        };
+        let rotation = body.rotation.as_ref().map(turned);
+        Self { scale: body.scale, rotation, position: DVec3::from_array(body.position) }
+    }
+
+    fn world(&self, local: DVec3) -> Vec3 {
+        let scaled = local * self.scale;
+        let turned = self.rotation.map_or(scaled, |rotation| rotation * scaled);
+        (turned + self.position).as_vec3()
+    }
+}
+
+fn plane(plane: &Plane) -> contact::Plane {
+    let level = || DVec3::new(0.0, plane.y.unwrap_or(0.0), 0.0);
+    contact::Plane {
+        point: plane.point.map_or_else(level, DVec3::from_array).as_vec3(),
+        normal: plane.normal.map_or(DVec3::Y, |normal| DVec3::from_array(normal).normalize()).as_vec3(),
+        stiffness: plane.stiffness as f32,
+        damping: plane.damping as f32,
+        law: plane.law,
+    }
+}
+
+fn material(stiffness: f64, damping: f64) -> Material {
+    Material { stiffness: stiffness as f32, damping: damping as f32 }
+}
+
+fn vec3(vector: [f64; 3]) -> Vec3 {
+    DVec3::from_array(vector).as_vec3()
+}

@@ -1,0 +1,171 @@
+//! Changing one value of a scene from outside its file: `--set KEY=VALUE`.
+
+use toml::de::DeTable;
+use toml::{Table, Value};
+
+use super::check::{MAX_POINTS, check};
+use super::read;
+use super::source::syntax_error;
+use super::suggest::{did_you_mean, shortened};
+use super::types::Scene;
+use crate::error::{Code, Error, Result};
+
+/// Keys that stand for the same key in every group of springs and every joint.
+const SHORTHANDS: [&str; 3] = ["stiffness", "damping", "rest_scale"];
+
+impl Scene {
+    /// Changes one value. The key is a path such as `dt`, `plane.y` or `body.jelly.springs.0.stiffness`; where there are
+    /// several of a thing, the next part may be an index (from 0), a body's name, or be left out to mean all of them.
+    /// `stiffness`, `damping` and `rest_scale` alone mean those of all springs. The value is written as in a scene file;
+    /// a single word needs no quotes.
+    ///
+    /// ```
+    /// # use sprung::scene::Scene;
+    /// let mut scene = Scene::builtin("jelly")?;
+    /// scene.set("gravity", "[0, -1.62, 0]")?;
+    /// scene.set("body.jelly.springs.stiffness", "500")?;
+    /// assert_eq!(scene.bodies[0].springs[0].stiffness, 500.0);
+    /// # Ok::<(), sprung::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), with `--set KEY=VALUE` as the place; the scene then stays as it was.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<()> {
+        let argument = format!("--set {}={}", shortened(key), shortened(value));
+        self.changed(key, value, &argument)
+            .map(|scene| *self = scene)
+            .map_err(|error| error.in_file(argument))
+    }
+
+    fn changed(&self, key: &str, value: &str, argument: &str) -> Result<Self> {
+        let value = parse_value(value)?;
+        let mut table = Table::try_from(self).map_err(|error| {
+            Error::new(Code::Unsupported, format!("the scene cannot be changed: {error}"))
+        })?;
+        let mut fields = Vec::new();
+        match SHORTHANDS.contains(&key) {
+            true => {
+                for path in ["body.springs", "joint"] {
+                    let steps: Vec<&str> = path.split('.').chain([key]).collect();
+                    put_in_table(&mut table, &steps, &value, "", &mut fields).or_else(|error| match error
+                        .code()
+                    {
+                        Code::NotFound => Ok(()), // a scene without joints, say
+                        _ => Err(error),
+                    })?;
+                }
+                if fields.is_empty() {
+                    return Err(Error::new(Code::NotFound, "the scene has no springs").at_field(key));
+                }
+            }
+            false => {
+                let steps: Vec<&str> = key.split('.').collect();
+                if steps.iter().any(|step| step.is_empty()) {
+                    let sentence =
+                        "is not a key; a key is a name such as dt, or names joined by dots such as plane.y";
+                    return Err(Error::new(Code::Syntax, sentence).at_field(shortened(key)));
+                }
+                put_in_table(&mut table, &steps, &value, "", &mut fields)?;
+            }
+        }
+        // Read back as a file is read, so that every check is made and every error is worded the same.
+        let text = toml::to_string(&table).map_err(|error| Error::new(Code::Syntax, error.to_string()))?;
+        let document = DeTable::parse(&text).map_err(|error| syntax_error(&error))?;
+        let mut scene: Self = read::from_document(&document).map_err(|error| self.or_a_body(key, error))?;
+        check(&scene, MAX_POINTS)?;
+        scene.origin = self.origin.with_overrides(&fields, argument);
+        Ok(scene)
+    }
+
+    /// An unknown key after `body.` may have been meant as the name of a body.
+    fn or_a_body(&self, key: &str, error: read::ReadError) -> Error {
+        let allowed = error.allowed;
+        let error = error.into_error();
+        let typed = key.strip_prefix("body.").and_then(|rest| rest.split('.').next());
+        match typed {
+            Some(typed) if error.place().field.as_deref() == Some(&format!("body[0].{typed}")) => {
+                let names = self.bodies.iter().map(|body| body.name.as_str());
+                let sentence = format!("there is no body and no key \"{}\" here", shortened(typed));
+                let better =
+                    Error::new(Code::UnknownKey, sentence).at_field(format!("body.{}", shortened(typed)));
+                match did_you_mean(typed, names.chain(allowed.iter().copied())) {
+                    Some(fix) => better.with_fix(fix),
+                    None => better.with_fix(format!("keys of a body are {}", allowed.join(", "))),
+                }
+            }
+            _ => error,
+        }
+    }
+}
+
+/// A value in TOML syntax. A shell takes quotes away, so a single word counts as text.
+fn parse_value(text: &str) -> Result<Value> {
+    let is_word = !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
+    match text.parse::<Value>() {
+        Ok(value) => Ok(value),
+        Err(_) if is_word => Ok(Value::String(text.to_owned())),
+        Err(error) => {
+            Err(syntax_error(&error).with_fix("write the value as in a scene file, such as 0.5 or [0, 1, 0]"))
+        }
+    }
+}
+
+/// Puts a value where the steps lead, and notes the fields it went to.
+fn put_in_table(
+    table: &mut Table,
+    steps: &[&str],
+    value: &Value,
+    path: &str,
+    fields: &mut Vec<String>,
+) -> Result<()> {
+    let Some((&step, rest)) = steps.split_first() else { return Ok(()) };
+    let field = if path.is_empty() { step.to_owned() } else { format!("{path}.{step}") };
+    if rest.is_empty() {
+        table.insert(step.to_owned(), value.clone());
+        fields.push(field);
+        return Ok(());
+    }
+    match table.get_mut(step) {
+        Some(inner) => put(inner, rest, value, &field, fields),
+        None if ["plane", "body", "joint", "springs", "pins"].contains(&step) => {
+            Err(Error::new(Code::NotFound, format!("the scene has no {step} here")).at_field(field))
+        }
+        None => {
+            // A table that the scene leaves out, such as rotation; the reader refuses it if there is no such key.
+            let mut inner = Table::new();
+            put_in_table(&mut inner, rest, value, &field, fields)?;
+            table.insert(step.to_owned(), Value::Table(inner));
+            Ok(())
+        }
+    }
+}
+
+fn put(here: &mut Value, steps: &[&str], value: &Value, path: &str, fields: &mut Vec<String>) -> Result<()> {
+    let Some((&step, rest)) = steps.split_first() else {
+        *here = value.clone();
+        fields.push(path.to_owned());
+        return Ok(());
+    };
+    match here {
+        Value::Table(table) => put_in_table(table, steps, value, path, fields),
+        Value::Array(list) => {
+            let count = list.len();
+            let named = |entry: &Value| entry.get("name").and_then(Value::as_str) == Some(step);
+            let index = step.parse().ok().or_else(|| list.iter().position(named));
+            if let Some(index) = index {
+                let Some(entry) = list.get_mut::<usize>(index) else {
+                    let sentence = format!(
+                        "there is no entry {index} here; entries are 0 to {}",
+                        count.saturating_sub(1)
+                    );
+                    return Err(Error::new(Code::NotFound, sentence).at_field(path));
+                };
+                return put(entry, rest, value, &format!("{path}[{index}]"), fields);
+            }
+            let mut entries = list.iter_mut().enumerate();
+            entries
+                .try_for_each(|(index, entry)| put(entry, steps, value, &format!("{path}[{index}]"), fields))
+        }
+        _ => Err(Error::new(Code::WrongType, "is a single value, and has nothing inside").at_field(path)),
+    }
+}
