@@ -1,33 +1,55 @@
 //! The one place that knows paths: outputs grow beside their place and are renamed when whole.
 
-use std::fs::File;
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use same_file::Handle;
 use sprung::{Code, Error, Result};
 
+/// Bytes gathered before they are handed to the system.
+const BUFFER_BYTES: usize = 1 << 16;
+
 /// A file that grows as `NAME.partial` and gets its name when it is whole. Dropped unfinished, it is removed.
+///
+/// While it grows it is locked, so that two runs never mix their output in one file. The `.partial` of a run that was
+/// killed is not locked any more, and the next run writes over it.
+///
+/// A format that can keep what was written before the disk filled up calls [`commit`](Self::commit) after each whole
+/// frame and [`roll_back`](Self::roll_back) before it completes the file.
 #[derive(Debug)]
 pub struct PartialFile {
     path: PathBuf,
     partial: PathBuf,
     writer: Option<BufWriter<File>>,
+    committed: u64,
 }
 
 impl PartialFile {
     /// Begins `path`, as `path.partial`.
     ///
     /// # Errors
-    /// [`Code::Unwritable`], naming the file.
+    /// [`Code::Unwritable`], naming the file: its folder is missing or closed to us, it is itself a folder, or it is
+    /// being written already.
     pub fn create(path: &Path) -> Result<Self> {
         if path.is_dir() {
-            return Err(unwritable(path, "is a folder").with_fix("give a file's name"));
+            return Err(unwritable(path, "cannot be written: it is a folder").with_fix("give a file's name"));
         }
-        let mut name = path.file_name().ok_or_else(|| unwritable(path, "is not a file's name"))?.to_owned();
+        let Some(name) = path.file_name() else {
+            return Err(unwritable(path, "cannot be written: it is not a file's name"));
+        };
+        let mut name = name.to_owned();
         name.push(".partial");
         let partial = path.with_file_name(name);
-        let file = File::create(&partial).map_err(|error| write_error(path, &error))?;
-        Ok(Self { path: path.to_owned(), partial, writer: Some(BufWriter::with_capacity(1 << 16, file)) })
+        let file = open_locked(&partial).map_err(|error| match error.kind() {
+            io::ErrorKind::WouldBlock => {
+                unwritable(path, "cannot be written: another output is being written there")
+                    .with_fix("wait until it is done, or give another name")
+            }
+            _ => write_error(path, &error),
+        })?;
+        let writer = Some(BufWriter::with_capacity(BUFFER_BYTES, file));
+        Ok(Self { path: path.to_owned(), partial, writer, committed: 0 })
     }
 
     /// The name the file will have.
@@ -40,37 +62,60 @@ impl PartialFile {
         &self.partial
     }
 
+    /// Writes out what is buffered and remembers this end of the file as one to come back to.
+    ///
+    /// # Errors
+    /// As writing does.
+    pub fn commit(&mut self) -> io::Result<()> {
+        self.flush()?;
+        self.committed = self.writer().seek(SeekFrom::End(0))?;
+        Ok(())
+    }
+
+    /// Forgets all that was written since the last [`commit`](Self::commit), buffered or not; the next write follows it.
+    ///
+    /// # Errors
+    /// If the system cannot shorten the file.
+    pub fn roll_back(&mut self) -> io::Result<()> {
+        let Some(writer) = self.writer.take() else { return Ok(()) };
+        // Taken apart, not flushed: after a failed write the buffer still holds what did not fit.
+        let (mut file, _) = writer.into_parts();
+        let result = file.set_len(self.committed).and_then(|()| file.seek(SeekFrom::Start(self.committed)));
+        self.writer = Some(BufWriter::with_capacity(BUFFER_BYTES, file));
+        result.map(|_| ())
+    }
+
     /// Writes out what is buffered, gives the file its name and tells its size in bytes.
     ///
     /// # Errors
-    /// [`Code::Unwritable`], naming the file.
+    /// [`Code::Unwritable`], naming the file; nothing is left of it then.
     pub fn finish(mut self) -> Result<u64> {
         self.complete().map_err(|error| write_error(&self.path, &error))
     }
 
     fn complete(&mut self) -> io::Result<u64> {
-        let Some(writer) = self.writer.take() else { return Ok(0) };
-        let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        self.flush()?;
+        let file = self.writer().get_ref();
         file.sync_all()?;
         let bytes = file.metadata()?.len();
-        drop(file);
-        std::fs::rename(&self.partial, &self.path).inspect_err(|_| {
-            let _ = std::fs::remove_file(&self.partial);
-        })?;
+        // Renamed while still locked: nobody can take the partial file for an abandoned one in between.
+        std::fs::rename(&self.partial, &self.path)?;
+        self.writer = None;
         Ok(bytes)
     }
 
     fn writer(&mut self) -> &mut BufWriter<File> {
-        self.writer.as_mut().expect("the writer is there until finish")
+        self.writer.as_mut().expect("the writer is there until the file is complete")
     }
 }
 
 impl Drop for PartialFile {
     fn drop(&mut self) {
         if let Some(writer) = self.writer.take() {
-            // Not flushed: what is buffered is of no use any more.
-            drop(writer.into_parts());
+            // Not flushed: what is buffered is of no use any more. Removed before the lock is let go.
+            let (file, _) = writer.into_parts();
             let _ = std::fs::remove_file(&self.partial);
+            drop(file);
         }
     }
 }
@@ -91,18 +136,57 @@ impl Seek for PartialFile {
     }
 }
 
+/// Opens or creates a file, empty and locked. `WouldBlock` if somebody else holds the lock.
+fn open_locked(path: &Path) -> io::Result<File> {
+    loop {
+        // Not truncated before it is ours: it may be another run's.
+        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(io::ErrorKind::WouldBlock.into()),
+            // Some network file systems know no locks; there, the last writer wins.
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+        // Another run may have completed and renamed the file between our opening and our lock. Then what we hold is
+        // its finished output, and the partial name is free: try again.
+        let still_named = match Handle::from_path(path) {
+            Ok(named) => named == Handle::from_file(file.try_clone()?)?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => false,
+            Err(error) => return Err(error),
+        };
+        if still_named {
+            file.set_len(0)?;
+            return Ok(file);
+        }
+    }
+}
+
+/// A temporary file without a name, in the folder of `path`: on the disk that has room for the output. It is gone when
+/// it is dropped, and when the run is killed.
+///
+/// # Errors
+/// [`Code::Unwritable`], naming `path`.
+pub fn spool_beside(path: &Path) -> Result<File> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))
+}
+
 /// The sentence for a file that cannot be written.
 pub fn write_error(path: &Path, error: &io::Error) -> Error {
-    let sentence = match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "cannot be written: the disk is full".to_owned()
-        }
-        io::ErrorKind::NotFound => "cannot be written: its folder does not exist".to_owned(),
-        io::ErrorKind::PermissionDenied => "cannot be written: permission denied".to_owned(),
-        io::ErrorKind::IsADirectory => "cannot be written: it is a folder".to_owned(),
-        _ => format!("cannot be written: {error}"),
+    let reason = match error.kind() {
+        io::ErrorKind::StorageFull => "the disk is full",
+        io::ErrorKind::QuotaExceeded => "the disk quota is used up",
+        io::ErrorKind::FileTooLarge => "it would become larger than a file may be here",
+        io::ErrorKind::NotFound => "its folder does not exist",
+        io::ErrorKind::NotADirectory => "its folder is not a folder",
+        io::ErrorKind::PermissionDenied => "permission denied",
+        io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only",
+        io::ErrorKind::IsADirectory => "it is a folder",
+        io::ErrorKind::InvalidFilename => "its name is too long or not allowed here",
+        _ => return unwritable(path, format!("cannot be written: {error}")),
     };
-    unwritable(path, sentence)
+    unwritable(path, format!("cannot be written: {reason}"))
 }
 
 fn unwritable(path: &Path, sentence: impl Into<String>) -> Error {

@@ -1,10 +1,17 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
+mod csv;
+mod npz;
+mod stored_zip;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use sprung::energy::Energy;
 use sprung::{Model, Params, Result, Snapshot};
+
+pub use csv::CSV;
+pub use npz::NPZ;
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]
@@ -55,6 +62,9 @@ pub struct Written {
 }
 
 /// An output being written. Dropped before [`finish`](Export::finish) it leaves nothing behind.
+///
+/// A frame that could not be taken does not spoil those before it: after an error from [`frame`](Export::frame),
+/// `finish` still completes the file with the whole frames. So does a run that ends early for another reason.
 pub trait Export {
     /// Takes one frame.
     ///

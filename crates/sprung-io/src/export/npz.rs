@@ -1,0 +1,254 @@
+//! NumPy archives: `numpy.load("run.npz")["positions"]` has the shape (frames, points, 3).
+//!
+//! An `.npz` file is a zip archive of `.npy` files. How many frames there will be is not known at the start, and no
+//! frame is kept in memory: positions grow in their place at the archive's end, while times and velocities wait in
+//! temporary files beside it and are moved behind the positions when the run is over.
+//!
+//! A full disk costs the frame that did not fit and no other. The move takes no more room than it frees, for it goes from
+//! the end to the start and shortens the temporary file as it goes; the little that is needed besides is set aside at
+//! the start.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use crc32fast::Hasher;
+use sprung::{Result, Vec3};
+
+use super::stored_zip::StoredZip;
+use super::{Export, Exporter, Frame, Options, RunInfo, Written};
+use crate::files::{PartialFile, spool_beside, write_error};
+
+/// `.npz`: arrays `time`, `positions` and `velocities` (frames, points, 3), `springs` and `mass`.
+pub const NPZ: Exporter = Exporter {
+    ending: "npz",
+    description: "NumPy arrays: time, positions, velocities, springs, mass (s, m, m/s, -, kg)",
+    open,
+};
+
+/// Length of every `.npy` header: room for any shape, and a multiple of 64 as the format asks.
+const NPY_HEADER_BYTES: usize = 128;
+/// Bytes that are written or moved at once.
+const PIECE_BYTES: usize = 1 << 18;
+/// Room on the disk that is set aside: for the pieces in flight and for the archive's directory.
+const RESERVE_BYTES: usize = 4 * PIECE_BYTES;
+
+struct NpzExport {
+    /// The archive, whose last entry is the positions.
+    archive: StoredZip<PartialFile>,
+    velocities: BufWriter<File>,
+    times: BufWriter<File>,
+    /// Room on the disk, given back when the archive is completed.
+    reserve: File,
+    points: u64,
+    frames: u64,
+    /// What the three arrays hold of whole frames.
+    whole: Tallies,
+}
+
+/// How much was written of an array, and its checksum.
+#[derive(Clone, Debug, Default)]
+struct Tally {
+    bytes: u64,
+    checksum: Hasher,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Tallies {
+    times: Tally,
+    positions: Tally,
+    velocities: Tally,
+}
+
+fn open(path: &Path, run: &RunInfo, _: &Options) -> Result<Box<dyn Export>> {
+    let mut archive = StoredZip::new(PartialFile::create(path)?);
+    let mut reserve = spool_beside(path)?;
+    let begun = begin(&mut archive, &mut reserve, run);
+    begun.map_err(|error| write_error(path, &error))?;
+    Ok(Box::new(NpzExport {
+        archive,
+        velocities: BufWriter::new(spool_beside(path)?),
+        times: BufWriter::new(spool_beside(path)?),
+        reserve,
+        points: run.model.point_count() as u64,
+        frames: 0,
+        whole: Tallies::default(),
+    }))
+}
+
+/// Sets room aside, writes what is known at the start, and begins the positions.
+fn begin(archive: &mut StoredZip<PartialFile>, reserve: &mut File, run: &RunInfo) -> io::Result<()> {
+    // Not zeros: some file systems take no room for those.
+    reserve.write_all(&vec![0xA5; RESERVE_BYTES])?;
+
+    let springs = run.model.springs();
+    let ends = springs.iter().flatten().map(|end| end.to_le_bytes());
+    write_array(archive, "springs.npy", "<u4", &[springs.len() as u64, 2], ends)?;
+    let masses = &run.params.point_mass;
+    write_array(
+        archive,
+        "mass.npy",
+        "<f4",
+        &[masses.len() as u64],
+        masses.iter().map(|mass| mass.to_le_bytes()),
+    )?;
+
+    archive.begin("positions.npy")?;
+    archive.out().write_all(&[0; NPY_HEADER_BYTES])?; // until the shape is known
+    archive.out().commit()
+}
+
+impl Export for NpzExport {
+    fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
+        self.take(frame).map_err(|error| write_error(self.archive.out().path(), &error))
+    }
+
+    fn finish(mut self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written> {
+        let path = self.archive.out().path().to_owned();
+        let frames = self.frames;
+        let file = self.complete(progress).map_err(|error| write_error(&path, &error))?;
+        Ok(Written { bytes: file.finish()?, path, frames })
+    }
+}
+
+impl NpzExport {
+    fn take(&mut self, frame: &Frame<'_>) -> io::Result<()> {
+        let mut tallies = self.whole.clone();
+        tallies.times.write(&mut self.times, std::iter::once(frame.snapshot.time.to_le_bytes()))?;
+        tallies.positions.write(self.archive.out(), components(&frame.snapshot.positions))?;
+        tallies.velocities.write(&mut self.velocities, components(&frame.snapshot.velocities))?;
+        // Only what has reached the files counts: what is buffered may not fit on the disk.
+        self.times.flush()?;
+        self.velocities.flush()?;
+        self.archive.out().commit()?;
+        self.whole = tallies;
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn complete(self, progress: &mut dyn FnMut(f64)) -> io::Result<PartialFile> {
+        let Self { mut archive, velocities, times, reserve, points, frames, whole } = self;
+        // Give up what does not belong to a whole frame, and the room that was set aside.
+        archive.out().roll_back()?;
+        drop(reserve);
+
+        let start = archive.out().stream_position()? - whole.positions.bytes - NPY_HEADER_BYTES as u64;
+        end_array(&mut archive, start, "<f4", &[frames, points, 3], whole.positions)?;
+
+        let start = archive.begin("time.npy")?;
+        move_content(times, archive.out(), start, whole.times.bytes, &mut |_| {})?;
+        end_array(&mut archive, start, "<f8", &[frames], whole.times)?;
+
+        let start = archive.begin("velocities.npy")?;
+        move_content(velocities, archive.out(), start, whole.velocities.bytes, progress)?;
+        end_array(&mut archive, start, "<f4", &[frames, points, 3], whole.velocities)?;
+
+        archive.finish()
+    }
+}
+
+/// Writes an array whose numbers are all there.
+fn write_array<W: Write + Seek, const N: usize>(
+    archive: &mut StoredZip<W>,
+    name: &'static str,
+    kind: &str,
+    shape: &[u64],
+    numbers: impl Iterator<Item = [u8; N]>,
+) -> io::Result<()> {
+    let start = archive.begin(name)?;
+    archive.out().write_all(&[0; NPY_HEADER_BYTES])?;
+    let mut tally = Tally::default();
+    tally.write(archive.out(), numbers)?;
+    end_array(archive, start, kind, shape, tally)
+}
+
+/// Fills in the header of the array begun last, which starts at `start`, and ends its entry.
+fn end_array<W: Write + Seek>(
+    archive: &mut StoredZip<W>,
+    start: u64,
+    kind: &str,
+    shape: &[u64],
+    tally: Tally,
+) -> io::Result<()> {
+    let header = npy_header(kind, shape);
+    archive.out().seek(SeekFrom::Start(start))?;
+    archive.out().write_all(&header)?;
+    let mut checksum = Hasher::new();
+    checksum.update(&header);
+    checksum.combine(&tally.checksum);
+    archive.end(NPY_HEADER_BYTES as u64 + tally.bytes, checksum.finalize())
+}
+
+impl Tally {
+    /// Writes numbers, given as little-endian bytes, and counts them in.
+    fn write<const N: usize>(
+        &mut self,
+        out: &mut impl Write,
+        numbers: impl Iterator<Item = [u8; N]>,
+    ) -> io::Result<()> {
+        let mut piece = Vec::with_capacity(PIECE_BYTES);
+        for number in numbers {
+            piece.extend_from_slice(&number);
+            if piece.len() + N > PIECE_BYTES {
+                self.write_bytes(out, &piece)?;
+                piece.clear();
+            }
+        }
+        self.write_bytes(out, &piece)
+    }
+
+    fn write_bytes(&mut self, out: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
+        out.write_all(bytes)?;
+        self.checksum.update(bytes);
+        self.bytes += bytes.len() as u64;
+        Ok(())
+    }
+}
+
+/// Moves the first `bytes` of a temporary file behind the `.npy` header that starts at `start`, last piece first, and
+/// shortens the temporary file as it goes.
+fn move_content<W: Write + Seek>(
+    spool: BufWriter<File>,
+    out: &mut W,
+    start: u64,
+    bytes: u64,
+    progress: &mut dyn FnMut(f64),
+) -> io::Result<()> {
+    // Taken apart, not flushed: after a failed write the buffer still holds what did not fit.
+    let (mut spool, _) = spool.into_parts();
+    spool.set_len(bytes)?;
+    let content = start + NPY_HEADER_BYTES as u64;
+    let mut piece = vec![0; PIECE_BYTES];
+    let mut left = bytes;
+    while left > 0 {
+        let from = (left - 1) / PIECE_BYTES as u64 * PIECE_BYTES as u64;
+        let piece = &mut piece[..(left - from) as usize];
+        spool.seek(SeekFrom::Start(from))?;
+        spool.read_exact(piece)?;
+        out.seek(SeekFrom::Start(content + from))?;
+        out.write_all(piece)?;
+        spool.set_len(from)?;
+        left = from;
+        progress(1.0 - left as f64 / bytes as f64);
+    }
+    Ok(())
+}
+
+/// The header of a `.npy` file, version 1.0, in C order: the magic string, the length of what follows, a Python
+/// dictionary, spaces up to the fixed length, and a line feed.
+fn npy_header(kind: &str, shape: &[u64]) -> [u8; NPY_HEADER_BYTES] {
+    let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
+    let text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({shape}), }}");
+    let mut header = [b' '; NPY_HEADER_BYTES];
+    header[..8].copy_from_slice(b"\x93NUMPY\x01\x00");
+    header[8..10].copy_from_slice(&(NPY_HEADER_BYTES as u16 - 10).to_le_bytes());
+    // At most 10 + 51 + 3·22 + 4 bytes, three lengths of 20 digits each.
+    header[10..10 + text.len()].copy_from_slice(text.as_bytes());
+    header[NPY_HEADER_BYTES - 1] = b'\n';
+    header
+}
+
+/// The components of vectors, xyz interleaved, as little-endian bytes.
+fn components(vectors: &[Vec3]) -> impl Iterator<Item = [u8; 4]> {
+    vectors.iter().flat_map(|vector| vector.to_array().map(f32::to_le_bytes))
+}

@@ -1,0 +1,123 @@
+//! A full disk costs the frame that did not fit, and no other.
+//!
+//! Each case runs in a child process, this same test program, under a limit that the system sets: a small disk of its
+//! own, or a limit on the size of files.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use sprung::Code;
+use sprung_io::export::{CSV, NPZ};
+
+use crate::common::{begin, give, names_in, run_of, snapshot};
+use crate::npz;
+
+const POINTS: usize = 1000;
+
+/// Runs one of the children below, in a shell that first does `limit`. `$FOLDER` is where it writes.
+fn in_child(child: &str, limit: &str) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = Command::new("sh")
+        .args(["-c", &format!("{limit} && exec \"$0\" \"$@\"")])
+        .arg(std::env::current_exe().expect("this program has a path"))
+        .args(["--exact", &format!("full_disk::{child}"), "--ignored", "--nocapture"])
+        .env("FOLDER", folder.path())
+        .output()
+        .expect("there is a shell");
+    let said =
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && said.contains("1 passed"), "{child} failed:\n{said}");
+}
+
+fn folder() -> PathBuf {
+    std::env::var_os("FOLDER").expect("run by a test of this file").into()
+}
+
+/// Gives frames until one does not fit; then completes the file. Gives the frames that were whole.
+fn fill(exporter: sprung_io::Exporter, path: &Path, sentence: &str) -> u64 {
+    let run = run_of(POINTS);
+    let mut export = begin(exporter, path, &run, 0).expect("the start fits");
+    let mut frames = 0;
+    let error = loop {
+        match give(&mut *export, &run, frames) {
+            Ok(()) => frames += 1,
+            Err(error) => break error,
+        }
+    };
+    assert_eq!((error.code(), error.sentence()), (Code::Unwritable, sentence));
+    // The disk is still full: the next frame does not fit either, and does no harm.
+    assert!(give(&mut *export, &run, frames).is_err());
+    let written = export.finish(&mut |_| {}).expect("whole frames are kept");
+    assert_eq!(written.frames, frames);
+    assert!(frames > 10, "only {frames} frames");
+    frames
+}
+
+fn check_csv(path: &Path, frames: u64) {
+    let text = std::fs::read_to_string(path).expect("text");
+    assert_eq!(text.lines().count() as u64, 1 + frames * POINTS as u64);
+    let last = format!("{},{},{},", frames - 1, snapshot(1, frames - 1).time, POINTS - 1);
+    assert!(text.ends_with('\n') && text.lines().last().is_some_and(|line| line.starts_with(&last)));
+}
+
+#[test]
+#[allow(clippy::print_stderr)]
+fn a_full_disk_keeps_the_whole_frames() {
+    // A disk of 4 MB that only the child sees; not every system lets an ordinary user have one.
+    let namespace = "unshare --map-root-user --mount";
+    let allowed = Command::new("sh").args(["-c", &format!("{namespace} mount -t tmpfs tmpfs /mnt")]).output();
+    if !allowed.is_ok_and(|output| output.status.success()) {
+        eprintln!("not run: this system gives no disk of one's own (unshare, mount)");
+        return;
+    }
+    let disk = format!(
+        r#"exec {namespace} sh -c 'mount -t tmpfs -o size=4m tmpfs "$FOLDER" && exec "$0" "$@"' "$0" "$@""#
+    );
+    in_child("child_on_a_small_disk", &disk);
+}
+
+#[test]
+#[ignore = "run by a_full_disk_keeps_the_whole_frames"]
+fn child_on_a_small_disk() {
+    let path = folder().join("a.csv");
+    let frames = fill(CSV, &path, "cannot be written: the disk is full");
+    check_csv(&path, frames);
+    std::fs::remove_file(path).expect("removed");
+
+    let path = folder().join("a.npz");
+    let frames = fill(NPZ, &path, "cannot be written: the disk is full") as usize;
+    let (positions, velocities) = (npz::load(&path, "positions"), npz::load(&path, "velocities"));
+    assert_eq!(npz::load(&path, "time").shape, [frames]);
+    assert_eq!(positions.shape, [frames, POINTS, 3]);
+    assert_eq!(velocities.shape, [frames, POINTS, 3]);
+    let last = snapshot(POINTS, frames as u64 - 1);
+    let start = (frames - 1) * POINTS * 3;
+    for (read, expected) in [(positions, last.positions), (velocities, last.velocities)] {
+        let expected: Vec<f32> = expected.iter().flat_map(|vector| vector.to_array()).collect();
+        assert_eq!(read.f32s()[start..], expected);
+    }
+    assert_eq!(names_in(&folder()), ["a.npz"]);
+}
+
+/// What stops the file here is a limit of 2 MB on its size, with the signal that goes with it ignored.
+#[test]
+fn a_file_that_may_not_grow_keeps_the_whole_frames() {
+    in_child("child_under_a_size_limit", "trap '' XFSZ && ulimit -f 4096");
+}
+
+#[test]
+#[ignore = "run by a_file_that_may_not_grow_keeps_the_whole_frames"]
+fn child_under_a_size_limit() {
+    let sentence = "cannot be written: it would become larger than a file may be here";
+    let path = folder().join("a.csv");
+    let frames = fill(CSV, &path, sentence);
+    check_csv(&path, frames);
+
+    // An archive needs its arrays in one file, so here nothing can be kept, and nothing is left.
+    let run = run_of(POINTS);
+    let mut export = begin(NPZ, &folder().join("a.npz"), &run, 100).expect("these fit, each in its file");
+    assert!((100..10_000).any(|frame| give(&mut *export, &run, frame).is_err()));
+    let error = export.finish(&mut |_| {}).expect_err("too large together");
+    assert_eq!(error.sentence(), sentence);
+    assert_eq!(names_in(&folder()), ["a.csv"]);
+}

@@ -1,0 +1,7 @@
+//! Exports read back, and what is left behind when they end early.
+
+mod common;
+#[cfg(target_os = "linux")]
+mod full_disk;
+mod npz;
+mod tables;
