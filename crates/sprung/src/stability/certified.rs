@@ -1,0 +1,233 @@
+//! Safe limits in one pass over the springs.
+//!
+//! *Why they are safe.* Write the stiffness as K = Σ_s G_sᵀ B_s G_s, where G_s takes the difference of spring s's ends. The
+//! non-zero eigenvalues of M^(-½) K M^(-½) are those of the matrix over springs N = B^½ G M⁻¹ Gᵀ B^½, a sum of one
+//! block P_i per point that involves only the springs at i, and whose norm is S_i = λ_max(Σ_{s∋i} B_s)/m_i. Hence
+//!
+//! ```text
+//! zᵀN z = Σ_i zᵀP_i z ≤ Σ_i S_i Σ_{s∋i} |z_s|² = Σ_s (S_i + S_j) |z_s|² ≤ max_s (S_i + S_j) · |z|²
+//! ```
+//!
+//! (for graphs, the bound of Anderson and Morley, 1985). A contact or grab of stiffness A_i per mass is a spring from i
+//! to a fixed place. Splitting P_i so that the anchor bears S_i/q + A_i and each spring S_i + q·A_i, with
+//! q = S_i/(S_i + T_i) and T_i the largest S across a spring from i, gives at every spring no more than
+//!
+//! ```text
+//! S_i + S_j + max(A_i, A_j)
+//! ```
+//!
+//! and A_i at a point without springs. (Counting A_i and A_j both would be safe too, and up to √2 too careful.)
+//! The same holds for C, and so for dt²K + 2dt·C at any dt.
+
+use std::ops::Add;
+
+use glam::Vec3;
+
+use super::network::axis_and_length;
+use super::symmetric3::Symmetric3;
+use super::{Limit, Setter, limit_of_mode};
+use crate::contact::Plane;
+use crate::model::Model;
+use crate::params::Params;
+
+/// The limits are rounded down by this part. It covers the rounding of all sums above it at points with fewer than
+/// 10⁴ springs (each addition is off by 1.1e-16 at most).
+const ROUNDING: f64 = 1e-12;
+
+/// A limit on dt that is safe in the given configuration: with its springs' directions and lengths, the contacts that
+/// touch, and the grabs. `None` if nothing limits dt.
+///
+/// With n a spring's direction and B = k[n nᵀ + max(0, 1 − L/ℓ)(I − n nᵀ)], the positive part of its Hessian:
+///
+/// ```text
+/// S_i = λ_max(Σ_{s∋i} B_s)/m_i        A_i = (Σ k_c over touched planes + Σ k over grabs)/m_i
+/// ω² = S_i + S_j + max(A_i, A_j)       c likewise, of k_d n nᵀ and k_c,d
+/// dt = min over springs of 4/(c + √(c² + 4ω²))
+/// ```
+///
+/// S and A of a fixed point are zero. A spring between coincident points has no direction: B = k·I, damping k_d·I.
+/// Cut springs and springs between two fixed points do not count; repeated springs add up.
+///
+/// `positions` holds one position per point, m. It may hold anything: a spring at a position that is not finite
+/// counts as if it had no direction.
+///
+/// ```
+/// use sprung::{Material, ModelBuilder, Vec3, stability};
+///
+/// let mut builder = ModelBuilder::new();
+/// let hook = builder.add_point(Vec3::ZERO, 0.0)?;
+/// let bob = builder.add_point(Vec3::new(0.0, -5.0, 0.0), 1.0)?;
+/// let spring = builder.add_spring(hook, bob, Material { stiffness: 1.0, damping: 0.2 })?;
+/// let (model, params, state) = builder.build()?;
+/// let limit = stability::certified(&model, &params, &state.position).expect("it has a live spring");
+/// assert_eq!(limit.setter, stability::Setter::Spring(spring));
+/// assert!((limit.dt - 1.80998).abs() < 1e-5); // 4/(0.2 + √(0.04 + 4)), exact for a single mode
+/// # Ok::<(), sprung::Error>(())
+/// ```
+///
+/// # Panics
+/// If `params` is not of this model ([`Params::validate`]), or there are fewer positions than points.
+pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<Limit> {
+    let mut stiffness = vec![Symmetric3::default(); model.point_count()];
+    let mut damping = stiffness.clone();
+    for (spring, &[i, j]) in model.springs().iter().enumerate() {
+        if !params.is_live(model, spring) {
+            continue;
+        }
+        let (i, j) = (i as usize, j as usize);
+        let k = f64::from(params.spring_stiffness[spring]);
+        let d = f64::from(params.spring_damping[spring]);
+        let rest_length = f64::from(params.spring_rest_length[spring]);
+        // n, B = k·n nᵀ + across·(I − n nᵀ), and the damper's part across n.
+        let (n, across, damping_across) = match axis_and_length(positions[i], positions[j]) {
+            Some((n, length)) => (n, k * (1.0 - rest_length / length).max(0.0), 0.0),
+            None => (glam::DVec3::X, k, d),
+        };
+        for end in [i, j] {
+            stiffness[end].add(n, k, across);
+            damping[end].add(n, d, damping_across);
+        }
+    }
+    let springs: Vec<Load> = (0..model.point_count())
+        .map(|point| {
+            let per_mass = inverse_mass(params, point);
+            if per_mass == 0.0 {
+                return Load::default();
+            }
+            let [omega2, c] = [stiffness[point], damping[point]].map(|sum| sum.largest_eigenvalue() * per_mass);
+            Load { omega2, c }
+        })
+        .collect();
+    let anchors = anchor_loads(params, |plane, point| plane.depth(positions[point]) > 0.0);
+    tightest(model, params, &springs, &anchors)
+}
+
+/// A limit on dt that is safe in every configuration the network can ever take, with every point touching every
+/// plane. `None` if nothing limits dt. It changes only with masses, pins, stiffness, damping, cuts, planes and grabs.
+///
+/// As [`certified`], but with B ⪯ k·I for every direction and length: S_i = Σ_{s∋i} k_s/m_i, likewise of k_d.
+///
+/// ```
+/// use sprung::{Material, ModelBuilder, Plane, Vec3, stability};
+///
+/// let mut builder = ModelBuilder::new();
+/// let a = builder.add_point(Vec3::ZERO, 1.0)?;
+/// let b = builder.add_point(Vec3::X, 1.0)?;
+/// builder.add_spring(a, b, Material { stiffness: 50.0, damping: 0.0 })?;
+/// let (model, mut params, _) = builder.build()?;
+/// let limit = |params| stability::every_configuration(&model, params).expect("it has a live spring").dt;
+/// assert!((limit(&params) - 0.2).abs() < 1e-9); // 2/√(50 + 50)
+/// params.planes.push(Plane::level(0.0, 300.0, 0.0));
+/// assert!((limit(&params) - 0.1).abs() < 1e-9); // 2/√(50 + 50 + 300)
+/// # Ok::<(), sprung::Error>(())
+/// ```
+///
+/// # Panics
+/// If `params` is not of this model ([`Params::validate`]).
+pub fn every_configuration(model: &Model, params: &Params) -> Option<Limit> {
+    let mut springs = vec![Load::default(); model.point_count()];
+    for (spring, &[i, j]) in model.springs().iter().enumerate() {
+        if params.is_live(model, spring) {
+            let k = f64::from(params.spring_stiffness[spring]);
+            let d = f64::from(params.spring_damping[spring]);
+            for end in [i, j] {
+                springs[end as usize] = springs[end as usize] + Load { omega2: k, c: d };
+            }
+        }
+    }
+    for (point, load) in springs.iter_mut().enumerate() {
+        *load = load.times(inverse_mass(params, point));
+    }
+    let anchors = anchor_loads(params, |_, _| true);
+    // Rounded down once more: equal limits may round differently, and this one is never to be above the certified.
+    let limit = tightest(model, params, &springs, &anchors)?;
+    Some(Limit { dt: limit.dt * (1.0 - ROUNDING), ..limit })
+}
+
+/// Bounds of the squared frequency ω² (1/s²) and the damping per mass c (1/s).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Load {
+    omega2: f64,
+    c: f64,
+}
+
+impl Load {
+    fn times(self, factor: f64) -> Self {
+        Self { omega2: self.omega2 * factor, c: self.c * factor }
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self { omega2: self.omega2.max(other.omega2), c: self.c.max(other.c) }
+    }
+
+    /// dt²ω² + 2dt·c, of which 4 is the most that is stable.
+    fn demand(self, dt: f64) -> f64 {
+        dt * dt * self.omega2 + 2.0 * dt * self.c
+    }
+}
+
+impl Add for Load {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { omega2: self.omega2 + other.omega2, c: self.c + other.c }
+    }
+}
+
+/// 1/m in float64, zero for a fixed point.
+fn inverse_mass(params: &Params, point: usize) -> f64 {
+    if params.is_fixed(point) { 0.0 } else { 1.0 / f64::from(params.point_mass[point]) }
+}
+
+/// What the touched planes and the grabs add at each point.
+fn anchor_loads(params: &Params, touches: impl Fn(&Plane, usize) -> bool) -> Vec<Load> {
+    let mut loads = vec![Load::default(); params.point_mass.len()];
+    for plane in &params.planes {
+        // The normal enters the force twice, and float32 lets it be a little longer than 1.
+        let normal = plane.normal.as_dvec3();
+        let load = Load { omega2: f64::from(plane.stiffness), c: f64::from(plane.damping) }.times(normal.dot(normal));
+        for (point, sum) in loads.iter_mut().enumerate() {
+            if touches(plane, point) {
+                *sum = *sum + load;
+            }
+        }
+    }
+    for grab in &params.grabs {
+        loads[grab.point] =
+            loads[grab.point] + Load { omega2: f64::from(grab.stiffness), c: f64::from(grab.damping) };
+    }
+    for (point, load) in loads.iter_mut().enumerate() {
+        *load = load.times(inverse_mass(params, point));
+    }
+    loads
+}
+
+/// The smallest limit over all live springs and anchored points, and what sets it.
+fn tightest(model: &Model, params: &Params, springs: &[Load], anchors: &[Load]) -> Option<Limit> {
+    let mut tightest: Option<Limit> = None;
+    let mut consider = |load: Load, setter: Setter| {
+        if let Some(dt) = limit_of_mode(load.omega2, load.c)
+            && tightest.is_none_or(|limit| dt < limit.dt)
+        {
+            tightest = Some(Limit { dt, setter });
+        }
+    };
+    for (spring, &[i, j]) in model.springs().iter().enumerate() {
+        if params.is_live(model, spring) {
+            let (i, j) = (i as usize, j as usize);
+            consider(springs[i] + springs[j] + anchors[i].max(anchors[j]), Setter::Spring(spring));
+        }
+    }
+    for (point, &load) in anchors.iter().enumerate() {
+        consider(load, Setter::Point(point));
+    }
+    tightest.map(|limit| Limit { dt: limit.dt * (1.0 - ROUNDING), setter: blame(model, limit, anchors) })
+}
+
+/// Where a contact or grab at a spring's end makes more than half of the demand, it is to blame and not the spring.
+fn blame(model: &Model, limit: Limit, anchors: &[Load]) -> Setter {
+    let Setter::Spring(spring) = limit.setter else { return limit.setter };
+    let ends = model.springs()[spring].map(|end| end as usize);
+    let culprit = ends.into_iter().find(|&end| anchors[end].demand(limit.dt) > 2.0);
+    culprit.map_or(limit.setter, Setter::Point)
+}
