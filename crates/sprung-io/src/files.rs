@@ -1,7 +1,7 @@
 //! The one place that knows paths: outputs grow beside their place and are renamed when whole.
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use same_file::Handle;
@@ -170,6 +170,34 @@ fn open_locked(path: &Path) -> io::Result<File> {
 pub fn spool_beside(path: &Path) -> Result<File> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))
+}
+
+/// Reads a file of at most `most` bytes; a larger one is refused unread.
+///
+/// # Errors
+/// [`Code::Unreadable`] or [`Code::TooLarge`], naming the file.
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
+    let failed = |error: io::Error| {
+        let reason = match error.kind() {
+            io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            io::ErrorKind::PermissionDenied => "cannot be read: permission denied".to_owned(),
+            io::ErrorKind::IsADirectory => "is a folder, and must be a file".to_owned(),
+            _ => format!("cannot be read: {error}"),
+        };
+        Error::new(Code::Unreadable, reason).in_file(path.display().to_string())
+    };
+    let file = File::open(path).map_err(failed)?;
+    if file.metadata().map_err(failed)?.is_dir() {
+        return Err(failed(io::ErrorKind::IsADirectory.into()));
+    }
+    // One byte beyond the limit tells that there is more, also where no length is known beforehand, as of a pipe.
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > most {
+        let sentence = format!("is larger than the {} MiB allowed", most >> 20);
+        return Err(Error::new(Code::TooLarge, sentence).in_file(path.display().to_string()));
+    }
+    Ok(bytes)
 }
 
 /// The sentence for a file that cannot be written.

@@ -34,7 +34,7 @@ pub struct LedgerSums {
 pub struct Energy {
     /// Σ ½mv² over the points that can move.
     pub kinetic: f64,
-    /// −Σ m g·x.
+    /// −Σ m g·x over the points that can move.
     pub gravitational: f64,
     /// Σ ½k_s(ℓ − L)².
     pub elastic: f64,

@@ -22,16 +22,16 @@ pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
     }
 }
 
-/// −Σ m g·x, J.
+/// −Σ m g·x over the points that can move, J.
 fn potential(_: &Model, params: &Params, state: &State) -> f64 {
     let gravity = params.gravity.as_dvec3();
-    let masses = params.point_mass.iter().enumerate();
-    -masses.map(|(point, &mass)| f64::from(mass) * gravity.dot(state.position64(point))).sum::<f64>()
+    let free = (0..state.position.len()).filter(|&point| !params.is_fixed(point));
+    -free.map(|point| f64::from(params.point_mass[point]) * gravity.dot(state.position64(point))).sum::<f64>()
 }
 
 fn parts(_: &Model, params: &Params, _: &State, conservative: &mut [DVec3], _: &mut [DVec3]) {
     let gravity = params.gravity.as_dvec3();
-    for (force, &mass) in conservative.iter_mut().zip(params.point_mass.iter()) {
-        *force += gravity * f64::from(mass);
+    for point in (0..conservative.len()).filter(|&point| !params.is_fixed(point)) {
+        conservative[point] += gravity * f64::from(params.point_mass[point]);
     }
 }

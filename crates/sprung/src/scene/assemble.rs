@@ -14,6 +14,7 @@ use crate::error::{Code, Error, Result};
 use crate::math::rotation;
 use crate::model::Model;
 use crate::params::{LENGTH_RANGE, MAGNITUDE_RANGE, Params};
+use crate::simulation::Simulation;
 use crate::stability;
 use crate::state::State;
 
@@ -25,6 +26,15 @@ impl Scene {
     /// fields may have been changed since), a box that holds no point, points too far out, too many springs.
     pub fn build(&self) -> Result<(Model, Params, State)> {
         self.build_within(MAX_POINTS, self.spring_limit())
+    }
+
+    /// A simulation of this scene, ready to step.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn simulation(&self) -> Result<Simulation> {
+        let (model, params, state) = self.build()?;
+        Simulation::new(model, params, state)
     }
 
     /// As [`build`](Self::build), but with at most so many points and springs, whatever the scene allows: for a caller

@@ -1,0 +1,148 @@
+//! The arguments: one definition for parsing, help, completions and the man page.
+
+use std::path::PathBuf;
+
+use clap::builder::RangedU64ValueParser;
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+/// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
+///
+/// Without a command it runs the demonstration: ten simulated seconds of a cube of jelly, to jelly.gif and jelly.png in
+/// the current folder.
+#[derive(Debug, Parser)]
+#[command(name = "sprung", version, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the built-in scenes
+    Scenes,
+    /// Describe a scene: points, springs, energy, and how large dt may be
+    Show(ShowArgs),
+    /// Simulate a scene and write its motion
+    Run(RunArgs),
+    /// Measure nanoseconds per spring and step
+    Bench(BenchArgs),
+    /// Write a commented scene file to start from
+    New(NewArgs),
+    /// Print the JSON Schema of scene files
+    Schema,
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page
+    Man,
+}
+
+/// A scene and what is changed of it.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// A built-in scene's name, or a scene file
+    pub scene: String,
+    /// Change a value of the scene, such as dt=0.005, gravity=[0,-1.62,0] or body.jelly.springs.stiffness=500
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// Arguments of `show`.
+#[derive(Debug, Args)]
+pub struct ShowArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `run`.
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// A file to write; its ending chooses the format (csv, npz, png, gif, mp4). May be given several times
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Record frames 0 to N
+    #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    pub frames: Option<u64>,
+    /// Record this many simulated seconds [default: 10]
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub seconds: Option<f64>,
+    /// Record F frames per simulated second; otherwise a frame is `substeps` steps of `dt`
+    #[arg(long, value_name = "F", value_parser = positive)]
+    pub fps: Option<f64>,
+    /// Bring the scene to rest first
+    #[arg(long)]
+    pub settle: bool,
+    /// Draw the energy against time into a .svg or .png
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// Simulated time of the picture in a .png, in seconds [default: the last frame]
+    #[arg(long, value_name = "T", value_parser = not_negative)]
+    pub at: Option<f64>,
+    /// Width and height of pictures in pixels, such as 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Worker threads; the result is the same for any number [default: by the scene's size]
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
+    /// No progress bar and no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// Built-in scenes or scene files [default: the four scenes of the assignment, cloth512 and jelly64]
+    pub scenes: Vec<String>,
+    /// Worker threads [default: by the scene's size]
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
+    /// Print one JSON object per scene, each on a line of its own
+    #[arg(long)]
+    pub json: bool,
+    /// Given by `cargo bench`; means nothing
+    #[arg(long, hide = true)]
+    pub bench: bool,
+}
+
+/// Arguments of `new`.
+#[derive(Debug, Args)]
+pub struct NewArgs {
+    /// The scene file to write
+    pub file: PathBuf,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "it must be a number".to_owned())?;
+    if value.is_finite() { Ok(value) } else { Err("it must be finite".to_owned()) }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let allowed = 1e-6..=1e9;
+    let value = finite(text)?;
+    if allowed.contains(&value) { Ok(value) } else { Err("it must be from 1e-6 to 1e9".to_owned()) }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value >= 0.0 { Ok(value) } else { Err("it must be at least 0".to_owned()) }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let allowed = 16..=8192;
+    let parse = |side: &str| side.parse().ok().filter(|side| allowed.contains(side));
+    let sides = text.split_once(['x', 'X']).and_then(|(width, height)| Some([parse(width)?, parse(height)?]));
+    sides.ok_or_else(|| "it must be WIDTHxHEIGHT, each from 16 to 8192, such as 1280x720".to_owned())
+}

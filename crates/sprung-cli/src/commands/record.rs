@@ -1,0 +1,113 @@
+//! The outputs of one run: every frame goes to all of them once it is known to be good.
+
+use std::path::PathBuf;
+
+use sprung::{Energy, Params, Result, Simulation, Snapshot};
+use sprung_io::{Export, Frame, Options, RunInfo, Written};
+use sprung_render::{export, plot};
+
+use crate::console;
+
+/// Steps after which the watch has either found a suspect state good or called it a blow-up.
+const STEPS_TO_A_VERDICT: usize = 64;
+
+/// A frame held back because energy came from nowhere in it: it may belong to a blow-up.
+struct Held {
+    index: u64,
+    snapshot: Snapshot,
+    params: Params,
+    energy: Option<Energy>,
+}
+
+/// All outputs of a run.
+pub struct Recorder {
+    exports: Vec<Box<dyn Export>>,
+    plot: Option<PathBuf>,
+    title: String,
+    samples: Vec<(f64, Energy)>,
+    held: Vec<Held>,
+    /// Whole frames recorded so far.
+    pub frames: u64,
+}
+
+impl Recorder {
+    /// Begins all files, before anything is simulated.
+    pub fn open(outputs: &[PathBuf], plot: Option<&PathBuf>, info: &RunInfo, options: &Options) -> Result<Self> {
+        let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
+        if let Some(path) = plot {
+            plot::check(path)?;
+        }
+        let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
+        let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;
+        let title = format!("Energy of {}", info.title);
+        Ok(Self { exports, plot: plot.cloned(), title, samples: Vec::new(), held: Vec::new(), frames: 0 })
+    }
+
+    /// Takes the current state as frame `index`.
+    pub fn record(&mut self, index: u64, simulation: &mut Simulation) -> Result<()> {
+        let energy = self.plot.is_some().then(|| simulation.energy());
+        let suspect = simulation.is_suspect();
+        let params = simulation.params().clone();
+        let snapshot = simulation.snapshot();
+        if suspect {
+            self.held.push(Held { index, snapshot: snapshot.clone(), params, energy });
+            return Ok(());
+        }
+        self.release()?;
+        self.write(&Frame { index, snapshot, params: &params, energy: energy.as_ref() })
+    }
+
+    /// After the last frame: goes on, on a copy, until frames that are held back are known to be good.
+    pub fn settle_doubts(&mut self, simulation: &Simulation) -> Result<()> {
+        let mut ahead = simulation.clone();
+        for _ in 0..STEPS_TO_A_VERDICT {
+            if self.held.is_empty() {
+                break;
+            }
+            ahead.step(ahead.params().dt)?;
+            if !ahead.is_suspect() {
+                self.release()?;
+            }
+        }
+        self.release()
+    }
+
+    /// Completes all files with the whole frames they have; the first error, if any, comes with what was written.
+    pub fn finish(self, quiet: bool) -> (Vec<Written>, Result<()>) {
+        let mut written = Vec::new();
+        let mut outcome = Ok(());
+        for export in self.exports {
+            let bar = console::progress(1000, "writing", quiet);
+            let finished = export.finish(&mut |share| bar.set_position((1000.0 * share) as u64));
+            bar.finish_and_clear();
+            match finished {
+                Ok(file) => written.push(file),
+                Err(error) => outcome = outcome.and(Err(error)),
+            }
+        }
+        if let Some(path) = &self.plot {
+            match plot::energy(path, &self.title, &self.samples) {
+                Ok(file) => written.push(file),
+                Err(error) => outcome = outcome.and(Err(error)),
+            }
+        }
+        (written, outcome)
+    }
+
+    fn release(&mut self) -> Result<()> {
+        for held in std::mem::take(&mut self.held) {
+            let Held { index, snapshot, params, energy } = &held;
+            self.write(&Frame { index: *index, snapshot, params, energy: energy.as_ref() })?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, frame: &Frame<'_>) -> Result<()> {
+        self.exports.iter_mut().try_for_each(|export| export.frame(frame))?;
+        if let Some(energy) = frame.energy {
+            self.samples.push((frame.snapshot.time, *energy));
+        }
+        self.frames += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,196 @@
+//! `sprung run`: simulate a scene and write its motion.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use sprung::scene::Scene;
+use sprung::{Change, Code, Error, Params, Result, SettleOptions, Simulation, stability};
+use sprung_io::{Options, RunInfo};
+
+use super::record::Recorder;
+use super::show::{describe, rounded};
+use crate::args::RunArgs;
+use crate::console::{bytes, counted, grouped, note, progress, say, seconds};
+use crate::interrupt::Interrupt;
+use crate::source;
+
+/// Simulated time when nothing is said, s.
+const DEFAULT_SECONDS: f64 = 10.0;
+
+/// Pictures per second of a moving picture when nothing is said.
+const DEFAULT_FPS: f64 = 25.0;
+
+/// A dt above this share of the sharp limit is warned of: the limit is computed from below.
+const WARNING_SHARE: f64 = 0.95;
+
+/// Frames allowed in one run.
+const MAX_FRAMES: f64 = 1e8;
+
+/// Runs, and says what was done.
+pub fn run(args: &RunArgs) -> Result<()> {
+    let interrupt = Interrupt::listen()?;
+    let (name, scene) = source::scene(&args.scene)?;
+    let mut simulation = source::simulation(&scene, args.threads)?;
+    let plan = Plan::new(args, simulation.params())?;
+    if plan.dt != simulation.params().dt {
+        simulation.change(Change::Dt(plan.dt))?;
+    }
+    simulation.keep_ledger(args.plot.is_some());
+    let options = Options { size: args.size, at: args.at };
+    let info = info(&name, &scene, &simulation, &plan);
+    let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options)?;
+    if !args.quiet {
+        plan.announce();
+    }
+    warn_of_large_dt(&simulation);
+
+    let begun = Instant::now();
+    let outcome = simulate(args, &plan, &mut simulation, &mut recorder, &interrupt);
+    let simulated_in = begun.elapsed();
+
+    // Whatever happened: the whole frames that there are become whole files.
+    let frames = recorder.frames;
+    let (written, finished) = recorder.finish(args.quiet);
+    if !args.quiet {
+        for file in &written {
+            let path = file.path.display();
+            note(format_args!("Wrote {path}: {}, {}.", counted(file.frames, "frame"), bytes(file.bytes)));
+        }
+    }
+    if let Err(error) = outcome {
+        return Err(if error.code() == Code::Interrupted { interrupted(frames) } else { error });
+    }
+    finished?;
+    if !args.quiet {
+        let state = simulation.state();
+        let pace = state.time / simulated_in.as_secs_f64().max(1e-9);
+        say(format_args!(
+            "{name}: {} frames, {} steps, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
+            grouped(frames),
+            grouped(state.step),
+            rounded(state.time),
+            seconds(simulated_in),
+            simulation.state_hash()
+        ));
+    }
+    Ok(())
+}
+
+/// How many frames of how many steps of which length.
+struct Plan {
+    dt: f64,
+    steps_per_frame: u64,
+    frames: u64,
+    /// The frame rate that dt was fitted to, and dt as it was.
+    fitted: Option<(f64, f64)>,
+}
+
+impl Plan {
+    fn new(args: &RunArgs, params: &Params) -> Result<Self> {
+        let animated = |path: &std::path::PathBuf| path.extension().is_some_and(|e| e == "gif" || e == "mp4");
+        let plays = args.frames.is_none() && args.output.iter().any(animated);
+        let fps = args.fps.or(plays.then_some(DEFAULT_FPS));
+        let (dt, steps_per_frame) = match fps {
+            // The largest step not above dt that divides a frame; a quotient that is whole up to rounding is whole.
+            Some(fps) => {
+                let steps = (1.0 / (fps * params.dt) - 1e-9).ceil().max(1.0);
+                (1.0 / (fps * steps), steps as u64)
+            }
+            None => (params.dt, u64::from(params.substeps)),
+        };
+        let frame_time = dt * steps_per_frame as f64;
+        let frames = (args.seconds.unwrap_or(DEFAULT_SECONDS) / frame_time - 1e-9).ceil();
+        if args.frames.is_none() && frames > MAX_FRAMES {
+            let sentence = format!("would make {frames:.0} frames, and at most {MAX_FRAMES:.0} are allowed");
+            return Err(Error::new(Code::TooLarge, sentence).in_file("--seconds"));
+        }
+        let fitted = fps.filter(|_| dt != params.dt).map(|fps| (fps, params.dt));
+        Ok(Self { dt, steps_per_frame, frames: args.frames.unwrap_or(frames as u64), fitted })
+    }
+
+    fn announce(&self) {
+        if let Some((fps, dt)) = self.fitted {
+            let steps = counted(self.steps_per_frame, "step");
+            note(format_args!(
+                "dt is {} s instead of {} s, so that {steps} make a frame of 1/{} s.",
+                rounded(self.dt),
+                rounded(dt),
+                rounded(fps)
+            ));
+        }
+    }
+}
+
+fn info(name: &str, scene: &Scene, simulation: &Simulation, plan: &Plan) -> RunInfo {
+    RunInfo {
+        scene: name.to_owned(),
+        title: if scene.title.is_empty() { name.to_owned() } else { scene.title.clone() },
+        model: simulation.model().clone(),
+        params: simulation.params().clone(),
+        frame_time: plan.dt * plan.steps_per_frame as f64,
+    }
+}
+
+fn simulate(
+    args: &RunArgs,
+    plan: &Plan,
+    simulation: &mut Simulation,
+    recorder: &mut Recorder,
+    interrupt: &Interrupt,
+) -> Result<()> {
+    if args.settle {
+        settle(args, simulation, interrupt)?;
+    }
+    let bar = progress(plan.frames, "simulating", args.quiet);
+    recorder.record(0, simulation)?;
+    for frame in 1..=plan.frames {
+        for _ in 0..plan.steps_per_frame {
+            if interrupt.came() {
+                return Err(Error::new(Code::Interrupted, "interrupted"));
+            }
+            simulation.step(plan.dt)?;
+        }
+        recorder.record(frame, simulation)?;
+        bar.set_position(frame);
+    }
+    recorder.settle_doubts(simulation)?;
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn settle(args: &RunArgs, simulation: &mut Simulation, interrupt: &Interrupt) -> Result<()> {
+    let bar = progress(SettleOptions::default().max_steps, "settling", args.quiet);
+    let settled = simulation.settle_with(SettleOptions::default(), &mut |so_far| {
+        bar.set_position(so_far.steps);
+        if interrupt.came() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    bar.finish_and_clear();
+    if !args.quiet {
+        let steps = counted(settled.steps, "step");
+        note(format_args!("Settled in {steps}; the largest force left is {} N.", rounded(settled.residual_force)));
+    }
+    Ok(())
+}
+
+/// Says before the run that it will probably blow up. The sharp limit is only worth computing beyond the certified one.
+fn warn_of_large_dt(simulation: &Simulation) {
+    let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
+    let Some(certified) = stability::certified(model, params, positions).filter(|limit| params.dt > limit.dt) else {
+        return;
+    };
+    let Some(limit) = stability::sharp(model, params, positions).dt else { return };
+    if params.dt > WARNING_SHARE * limit {
+        let verdict = if params.dt > limit { "is over" } else { "is close to" };
+        note(format_args!(
+            "Warning: dt = {} s {verdict} the largest stable step of {} s, set by {}; it may blow up. Try dt = {} s, or \"auto\".",
+            rounded(params.dt),
+            rounded(limit),
+            describe(simulation, certified.setter),
+            rounded(WARNING_SHARE * certified.dt),
+        ));
+    }
+}
+
+fn interrupted(frames: u64) -> Error {
+    Error::new(Code::Interrupted, format!("interrupted; the {} recorded until then are kept", counted(frames, "frame")))
+}

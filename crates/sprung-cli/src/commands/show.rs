@@ -1,0 +1,152 @@
+//! `sprung show`: what a scene is, and how large dt may be.
+
+use serde::Serialize;
+use sprung::stability::{self, Limit, Setter, Sharp};
+use sprung::{Energy, Result, Simulation};
+
+use crate::args::ShowArgs;
+use crate::console::{grouped, say};
+use crate::source;
+
+/// The answer to `show --json`. A limit that does not exist is `null`.
+#[derive(Serialize)]
+struct Answer {
+    scene: String,
+    title: String,
+    points: usize,
+    springs: usize,
+    pinned: usize,
+    bodies: Vec<String>,
+    /// s.
+    dt: f64,
+    substeps: u32,
+    /// s; simulated time from one frame to the next.
+    frame_time: f64,
+    /// s.
+    dt_limit: Option<f64>,
+    /// s.
+    dt_limit_certified: Option<f64>,
+    /// s.
+    dt_limit_every_configuration: Option<f64>,
+    /// 1/s².
+    omega2_max: f64,
+    /// 1/s.
+    c_max: f64,
+    /// kg.
+    total_mass: f64,
+    /// J; the sum of the parts.
+    energy: f64,
+    energy_parts: EnergyParts,
+    state_hash: String,
+}
+
+#[derive(Serialize)]
+struct EnergyParts {
+    kinetic: f64,
+    gravitational: f64,
+    elastic: f64,
+    contact: f64,
+}
+
+/// Prints the description.
+pub fn run(args: &ShowArgs) -> Result<()> {
+    let (name, scene) = source::scene(&args.scene)?;
+    let simulation = source::simulation(&scene, Some(1))?;
+    let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
+    let sharp = stability::sharp(model, params, positions);
+    let certified = stability::certified(model, params, positions);
+    let every = stability::every_configuration(model, params);
+    let energy = simulation.energy();
+    if args.json {
+        let answer = Answer {
+            scene: name,
+            title: scene.title.clone(),
+            points: model.point_count(),
+            springs: model.spring_count(),
+            pinned: fixed_points(&simulation),
+            bodies: model.bodies().iter().map(|body| body.name.clone()).collect(),
+            dt: params.dt,
+            substeps: params.substeps,
+            frame_time: params.dt * f64::from(params.substeps),
+            dt_limit: sharp.dt,
+            dt_limit_certified: certified.map(|limit| limit.dt),
+            dt_limit_every_configuration: every.map(|limit| limit.dt),
+            omega2_max: sharp.omega2_max,
+            c_max: sharp.c_max,
+            total_mass: total_mass(&simulation),
+            energy: energy.total(),
+            energy_parts: EnergyParts {
+                kinetic: energy.kinetic,
+                gravitational: energy.gravitational,
+                elastic: energy.elastic,
+                contact: energy.contact,
+            },
+            state_hash: format!("{:016x}", simulation.state_hash()),
+        };
+        say(serde_json::to_string_pretty(&answer).unwrap_or_default());
+    } else {
+        say(format_args!("{name}: {}", scene.title));
+        print(&simulation, &energy, &sharp, certified.as_ref(), every.as_ref());
+    }
+    Ok(())
+}
+
+fn print(simulation: &Simulation, energy: &Energy, sharp: &Sharp, certified: Option<&Limit>, every: Option<&Limit>) {
+    let (model, params) = (simulation.model(), simulation.params());
+    let row = |label: &str, text: String| say(format_args!("  {label:<20} {text}"));
+    let fixed = fixed_points(simulation);
+    row("points", format!("{}, of which {} fixed", grouped(model.point_count()), grouped(fixed)));
+    row("springs", grouped(model.spring_count()));
+    row("moving mass", format!("{} kg", rounded(total_mass(simulation))));
+    row("energy", format!("{} J", rounded(energy.total())));
+    let frame = rounded(params.dt * f64::from(params.substeps));
+    row("dt", format!("{} s × {} substeps = {frame} s per frame", rounded(params.dt), params.substeps));
+    match sharp.dt {
+        None => row("dt limit", "none: nothing here limits the step".to_owned()),
+        Some(limit) => {
+            let verdict = if params.dt > limit { "  TOO LARGE: it will blow up" } else { "" };
+            row("dt limit", share(params.dt, limit) + verdict);
+        }
+    }
+    if let Some(limit) = certified {
+        row("  certified", format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)));
+    }
+    if let Some(limit) = every {
+        row("  in any shape", format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)));
+    }
+    if sharp.dt.is_some() {
+        row("fastest vibration", format!("ω² = {} 1/s², damping c = {} 1/s", rounded(sharp.omega2_max), rounded(sharp.c_max)));
+    }
+    row("state hash", format!("{:016x}", simulation.state_hash()));
+}
+
+fn share(dt: f64, limit: f64) -> String {
+    format!("{} s; dt is {:.1} % of it", rounded(limit), 100.0 * dt / limit)
+}
+
+/// A spring or point and the body it belongs to, in words.
+pub fn describe(simulation: &Simulation, setter: Setter) -> String {
+    match setter {
+        Setter::Spring(spring) => {
+            let [i, j] = simulation.model().springs()[spring];
+            format!("spring {spring} of {} (points {i} and {j})", simulation.model().spring_owner(spring))
+        }
+        Setter::Point(point) => format!("the contact or grab at point {point}"),
+    }
+}
+
+/// Six significant digits.
+pub fn rounded(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if rounded != 0.0 && !(1e-4..1e9).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
+fn fixed_points(simulation: &Simulation) -> usize {
+    (0..simulation.model().point_count()).filter(|&point| simulation.params().is_fixed(point)).count()
+}
+
+/// Of the points that can move, kg: a fixed point has no mass as far as the motion goes.
+fn total_mass(simulation: &Simulation) -> f64 {
+    let (params, points) = (simulation.params(), simulation.model().point_count());
+    (0..points).filter(|&point| !params.is_fixed(point)).map(|point| f64::from(params.point_mass[point])).sum()
+}

@@ -1,0 +1,30 @@
+//! The `sprung` command: arguments in, one sentence out when something is wrong, exit status 0, 2, 3 or 130.
+
+mod args;
+mod commands;
+mod console;
+mod interrupt;
+mod memory;
+mod source;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+pub use args::Cli;
+
+/// Runs the command with the given arguments, the program's name first, and gives its exit status.
+pub fn main_with<A: Into<OsString> + Clone>(args: impl IntoIterator<Item = A>) -> ExitCode {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => return console::usage(&error),
+    };
+    match commands::run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            console::complain(&error);
+            ExitCode::from(error.exit_status())
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! How much memory there is, asked before it is taken, and how much was taken at most.
+
+use sprung::{Code, Error, Result};
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+
+use crate::console::bytes;
+
+/// Refuses work that needs more memory than the machine has to give.
+///
+/// # Errors
+/// [`Code::TooLarge`].
+pub fn check(needed: u64, what: &str) -> Result<()> {
+    let refresh = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    // Where the system does not tell, nothing is refused.
+    let available = System::new_with_specifics(refresh).map_or(0, |system| system.available_memory());
+    if available == 0 || needed <= available {
+        return Ok(());
+    }
+    let sentence = format!("{what} needs about {} of memory, and {} are available", bytes(needed), bytes(available));
+    Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or a smaller radius"))
+}
+
+/// The most memory this process has held so far, bytes, where the system tells (Linux).
+pub fn peak() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}

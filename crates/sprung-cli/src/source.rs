@@ -1,0 +1,69 @@
+//! From what the user typed to a simulation: a built-in scene or a file, changed by `--set`.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use sprung::scene::Scene;
+use sprung::{Code, Error, Inline, Result, Simulation, Workers};
+use sprung_io::files;
+
+use crate::args::SceneArgs;
+use crate::memory;
+
+/// Scene files larger than this are refused unread.
+const MAX_SCENE_BYTES: u64 = 64 << 20;
+
+/// Springs from which a scene is worth several threads: below it, handing work over costs more than it saves.
+const SPRINGS_FOR_THREADS: usize = 200_000;
+
+/// The scene with its changes, and the name to call it by.
+pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
+    let (name, mut scene) = named(&args.scene)?;
+    for assignment in &args.set {
+        let Some((key, value)) = assignment.split_once('=') else {
+            let error = Error::new(Code::Syntax, "needs a key and a value, such as dt=0.005");
+            return Err(error.in_file(format!("--set {assignment}")));
+        };
+        scene.set(key.trim(), value.trim())?;
+    }
+    Ok((name, scene))
+}
+
+fn named(text: &str) -> Result<(String, Scene)> {
+    let path = Path::new(text);
+    let looks_like_a_file = path.extension().is_some() || text.contains(['/', '\\']) || path.exists();
+    match Scene::builtin(text) {
+        Ok(scene) => Ok((text.to_owned(), scene)),
+        Err(_) if looks_like_a_file => {
+            let bytes = files::read(path, MAX_SCENE_BYTES)?;
+            let name = path.file_stem().map_or(text.to_owned(), |stem| stem.to_string_lossy().into_owned());
+            Ok((name, Scene::from_bytes(&bytes, text)?))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The simulation of a scene, without a history, after asking whether there is memory for it.
+pub fn simulation(scene: &Scene, threads: Option<usize>) -> Result<Simulation> {
+    memory::check(scene.estimated_bytes(), "the scene")?;
+    let mut simulation = scene.simulation()?;
+    simulation.keep_history(0);
+    simulation.set_workers(workers(thread_count(threads, simulation.model().spring_count()))?);
+    Ok(simulation)
+}
+
+/// As many threads as asked for; otherwise one for a small scene and all cores for a large one.
+pub fn thread_count(threads: Option<usize>, springs: usize) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    threads.unwrap_or_else(|| if springs < SPRINGS_FOR_THREADS { 1 } else { cores() })
+}
+
+/// Worker threads to lend to the engine.
+pub fn workers(threads: usize) -> Result<Arc<dyn Workers>> {
+    if threads == 1 {
+        return Ok(Arc::new(Inline));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Error::new(Code::Unsupported, format!("cannot start {threads} threads: {error}")))?;
+    Ok(Arc::new(pool))
+}
