@@ -120,7 +120,7 @@ fn check_shape(path: &str, body: &Body) -> Result<()> {
         ("lattice", body.lattice.is_some()),
         ("points", body.points.is_some()),
     ];
-    exactly_one(path, "shape", &shapes)?;
+    exactly_one(path, "has no shape", &shapes)?;
     if let Some(chain) = &body.chain {
         count(&format!("{path}.chain.points"), chain.points)?;
         vector(&format!("{path}.chain.step"), chain.step, "m")?;
@@ -251,7 +251,7 @@ fn check_springs(path: &str, springs: &Springs, body: &Body) -> Result<()> {
         ("kinds", springs.kinds.is_some()),
         ("pairs", springs.pairs.is_some()),
     ];
-    exactly_one(path, "way to choose its points", &ways)?;
+    exactly_one(path, "does not say which points to join", &ways)?;
     if let Some(kinds) = &springs.kinds {
         let field = format!("{path}.kinds");
         if body.shape().is_none() {
@@ -296,7 +296,7 @@ fn check_joint(path: &str, joint: &Joint, bodies: &[Body]) -> Result<()> {
         return Err(error.at_field(format!("{path}.between")));
     }
     let ways = [("radius", joint.radius.is_some()), ("pairs", joint.pairs.is_some())];
-    exactly_one(path, "way to choose its points", &ways)?;
+    exactly_one(path, "does not say which points to join", &ways)?;
     for (index, pair) in joint.pairs.iter().flatten().enumerate() {
         for (end, &point) in pair.iter().enumerate() {
             point_of(&format!("{path}.pairs[{index}][{end}]"), point, ends[end])?;
@@ -326,13 +326,13 @@ fn check_material(path: &str, material: [Option<f64>; 4], rest_scale: f64, by_pa
 }
 
 /// Of several keys that exclude each other, one must be there.
-fn exactly_one(path: &str, what: &str, keys: &[(&str, bool)]) -> Result<()> {
+fn exactly_one(path: &str, none: &str, keys: &[(&str, bool)]) -> Result<()> {
     let all: Vec<&str> = keys.iter().map(|(key, _)| *key).collect();
     let found: Vec<&str> = keys.iter().filter(|(_, there)| *there).map(|(key, _)| *key).collect();
     match found[..] {
         [_] => Ok(()),
         [] => {
-            let sentence = format!("has no {what}; say one of {}", all.join(", "));
+            let sentence = format!("{none}; say one of {}", all.join(", "));
             Err(Error::new(Code::MissingField, sentence).at_field(path))
         }
         [first, second, ..] => {

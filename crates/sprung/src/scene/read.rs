@@ -24,6 +24,13 @@ pub(super) fn from_document<T: DeserializeOwned>(document: &Spanned<DeTable<'_>>
     T::deserialize(serde::de::value::MapAccessDeserializer::new(root))
 }
 
+/// The keys that a table of type `T` may have.
+pub(super) fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
+    // The list is known to serde alone, which tells it to whoever uses a key that is not in it.
+    let document = DeTable::parse("'' = 0");
+    document.ok().and_then(|document| from_document::<T>(&document).err()).map_or(&[], |error| error.allowed)
+}
+
 /// What was wrong, and where: filled in from the inside out as the error travels up through tables and lists.
 #[derive(Debug)]
 pub(super) struct ReadError {
@@ -35,7 +42,7 @@ pub(super) struct ReadError {
     /// Where in the text, in bytes.
     pub(super) span: Option<Range<usize>>,
     /// The keys that are allowed where an unknown one was found.
-    pub(super) allowed: &'static [&'static str],
+    allowed: &'static [&'static str],
 }
 
 #[derive(Debug)]
@@ -110,7 +117,8 @@ impl serde::de::Error for ReadError {
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
         let sentence =
             format!("is {}, and must be {}", found_in_words(found), in_words(&expected.to_string()));
-        Self::new(Code::OutOfRange, sentence)
+        let code = if matches!(found, Unexpected::Str(_)) { Code::WrongType } else { Code::OutOfRange };
+        Self::new(code, sentence)
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
@@ -129,7 +137,8 @@ impl serde::de::Error for ReadError {
     }
 
     fn unknown_field(key: &str, allowed: &'static [&'static str]) -> Self {
-        let sentence = format!("is not a known key; allowed here are {}", allowed.join(", "));
+        let are = if allowed.len() == 1 { "is" } else { "are" };
+        let sentence = format!("is not a known key; allowed here {are} {}", allowed.join(", "));
         let mut error = Self::new(Code::UnknownKey, sentence).inside(Step::Key(key.to_owned()));
         error.fix = did_you_mean(key, allowed.iter().copied());
         error.allowed = allowed;

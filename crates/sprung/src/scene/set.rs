@@ -4,10 +4,10 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 use super::check::{MAX_POINTS, check};
-use super::read;
+use super::read::{self, keys_of};
 use super::source::syntax_error;
 use super::suggest::{did_you_mean, shortened};
-use super::types::Scene;
+use super::types::{Body, Scene};
 use crate::error::{Code, Error, Result};
 
 /// Keys that stand for the same key in every group of springs and every joint.
@@ -16,8 +16,8 @@ const SHORTHANDS: [&str; 3] = ["stiffness", "damping", "rest_scale"];
 impl Scene {
     /// Changes one value. The key is a path such as `dt`, `plane.y` or `body.jelly.springs.0.stiffness`; where there are
     /// several of a thing, the next part may be an index (from 0), a body's name, or be left out to mean all of them.
-    /// `stiffness`, `damping` and `rest_scale` alone mean those of all springs. The value is written as in a scene file;
-    /// a single word needs no quotes.
+    /// `stiffness`, `damping` and `rest_scale` alone mean those of all springs, after a body (`body.jelly.stiffness`) those
+    /// of all its springs. The value is written as in a scene file; a single word needs no quotes.
     ///
     /// ```
     /// # use sprung::scene::Scene;
@@ -31,7 +31,7 @@ impl Scene {
     /// # Errors
     /// As [`parse`](Self::parse), with `--set KEY=VALUE` as the place; the scene then stays as it was.
     pub fn set(&mut self, key: &str, value: &str) -> Result<()> {
-        let argument = format!("--set {}={}", shortened(key), shortened(value));
+        let argument = one_line(&format!("--set {}={}", shortened(key), shortened(value)));
         self.changed(key, value, &argument)
             .map(|scene| *self = scene)
             .map_err(|error| error.in_file(argument))
@@ -43,59 +43,44 @@ impl Scene {
             Error::new(Code::Unsupported, format!("the scene cannot be changed: {error}"))
         })?;
         let mut fields = Vec::new();
-        match SHORTHANDS.contains(&key) {
-            true => {
-                for path in ["body.springs", "joint"] {
-                    let steps: Vec<&str> = path.split('.').chain([key]).collect();
-                    put_in_table(&mut table, &steps, &value, "", &mut fields).or_else(|error| match error
-                        .code()
-                    {
-                        Code::NotFound => Ok(()), // a scene without joints, say
-                        _ => Err(error),
-                    })?;
-                }
-                if fields.is_empty() {
-                    return Err(Error::new(Code::NotFound, "the scene has no springs").at_field(key));
+        let steps: Vec<&str> = key.split('.').collect();
+        match steps[..] {
+            _ if steps.iter().any(|step| step.is_empty()) => {
+                let sentence = "needs a key, a name such as dt or names joined by dots such as plane.y";
+                return Err(Error::new(Code::Syntax, sentence));
+            }
+            [key] if SHORTHANDS.contains(&key) => {
+                for owner in [&["body", "springs", key][..], &["joint", key]] {
+                    match put_in_table(&mut table, owner, &value, "", &mut fields) {
+                        Err(error) if error.code() != Code::NotFound => return Err(error),
+                        _ => {} // a scene without joints, say
+                    }
                 }
             }
-            false => {
-                let steps: Vec<&str> = key.split('.').collect();
-                if steps.iter().any(|step| step.is_empty()) {
-                    let sentence =
-                        "is not a key; a key is a name such as dt, or names joined by dots such as plane.y";
-                    return Err(Error::new(Code::Syntax, sentence).at_field(shortened(key)));
-                }
+            ["body", .., key] if SHORTHANDS.contains(&key) && !steps.contains(&"springs") => {
+                let mut steps = steps.clone();
+                steps.insert(steps.len() - 1, "springs");
                 put_in_table(&mut table, &steps, &value, "", &mut fields)?;
             }
+            _ => put_in_table(&mut table, &steps, &value, "", &mut fields)?,
+        }
+        if fields.is_empty() {
+            return Err(Error::new(Code::NotFound, "the scene has nothing of that name")
+                .at_field(one_line(&shortened(key))));
         }
         // Read back as a file is read, so that every check is made and every error is worded the same.
         let text = toml::to_string(&table).map_err(|error| Error::new(Code::Syntax, error.to_string()))?;
-        let document = DeTable::parse(&text).map_err(|error| syntax_error(&error))?;
-        let mut scene: Self = read::from_document(&document).map_err(|error| self.or_a_body(key, error))?;
+        let document = DeTable::parse(&text).map_err(|error| syntax_error(&error, &text))?;
+        let mut scene: Self = read::from_document(&document).map_err(read::ReadError::into_error)?;
         check(&scene, MAX_POINTS)?;
         scene.origin = self.origin.with_overrides(&fields, argument);
         Ok(scene)
     }
+}
 
-    /// An unknown key after `body.` may have been meant as the name of a body.
-    fn or_a_body(&self, key: &str, error: read::ReadError) -> Error {
-        let allowed = error.allowed;
-        let error = error.into_error();
-        let typed = key.strip_prefix("body.").and_then(|rest| rest.split('.').next());
-        match typed {
-            Some(typed) if error.place().field.as_deref() == Some(&format!("body[0].{typed}")) => {
-                let names = self.bodies.iter().map(|body| body.name.as_str());
-                let sentence = format!("there is no body and no key \"{}\" here", shortened(typed));
-                let better =
-                    Error::new(Code::UnknownKey, sentence).at_field(format!("body.{}", shortened(typed)));
-                match did_you_mean(typed, names.chain(allowed.iter().copied())) {
-                    Some(fix) => better.with_fix(fix),
-                    None => better.with_fix(format!("keys of a body are {}", allowed.join(", "))),
-                }
-            }
-            _ => error,
-        }
-    }
+/// Without line breaks, to be quoted as a place.
+fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
 }
 
 /// A value in TOML syntax. A shell takes quotes away, so a single word counts as text.
@@ -104,9 +89,8 @@ fn parse_value(text: &str) -> Result<Value> {
     match text.parse::<Value>() {
         Ok(value) => Ok(value),
         Err(_) if is_word => Ok(Value::String(text.to_owned())),
-        Err(error) => {
-            Err(syntax_error(&error).with_fix("write the value as in a scene file, such as 0.5 or [0, 1, 0]"))
-        }
+        Err(error) => Err(syntax_error(&error, text)
+            .with_fix("write the value as in a scene file, such as 0.5 or [0, 1, 0]")),
     }
 }
 
@@ -127,8 +111,8 @@ fn put_in_table(
     }
     match table.get_mut(step) {
         Some(inner) => put(inner, rest, value, &field, fields),
-        None if ["plane", "body", "joint", "springs", "pins"].contains(&step) => {
-            Err(Error::new(Code::NotFound, format!("the scene has no {step} here")).at_field(field))
+        None if ["plane", "joint", "springs", "pins"].contains(&step) => {
+            Err(Error::new(Code::NotFound, "is not in this scene").at_field(field))
         }
         None => {
             // A table that the scene leaves out, such as rotation; the reader refuses it if there is no such key.
@@ -150,6 +134,9 @@ fn put(here: &mut Value, steps: &[&str], value: &Value, path: &str, fields: &mut
         Value::Table(table) => put_in_table(table, steps, value, path, fields),
         Value::Array(list) => {
             let count = list.len();
+            if path == "body" {
+                check_body_step(list, step)?;
+            }
             let named = |entry: &Value| entry.get("name").and_then(Value::as_str) == Some(step);
             let index = step.parse().ok().or_else(|| list.iter().position(named));
             if let Some(index) = index {
@@ -168,4 +155,25 @@ fn put(here: &mut Value, steps: &[&str], value: &Value, path: &str, fields: &mut
         }
         _ => Err(Error::new(Code::WrongType, "is a single value, and has nothing inside").at_field(path)),
     }
+}
+
+/// After `body` comes an index, a body's name or a key.
+fn check_body_step(bodies: &[Value], step: &str) -> Result<()> {
+    let names = || bodies.iter().filter_map(|body| body.get("name").and_then(Value::as_str));
+    let keys = keys_of::<Body>();
+    if step.parse::<usize>().is_ok()
+        || names().any(|name| name == step)
+        || [keys, &SHORTHANDS].concat().contains(&step)
+    {
+        return Ok(());
+    }
+    let all = names().collect::<Vec<_>>().join(", ");
+    let sentence =
+        format!("is neither a body's name nor a key of bodies; the bodies are {}", shortened(&all));
+    let error =
+        Error::new(Code::UnknownKey, sentence).at_field(format!("body.{}", one_line(&shortened(step))));
+    Err(match did_you_mean(step, names().chain(keys.iter().copied())) {
+        Some(fix) => error.with_fix(fix),
+        None => error,
+    })
 }

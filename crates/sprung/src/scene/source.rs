@@ -6,6 +6,7 @@ use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
 use super::read::ReadError;
+use super::suggest::shortened;
 use crate::error::{Code, Error};
 
 /// The source of a scene, if it has one. It is no part of what the scene says: any two are equal.
@@ -74,20 +75,56 @@ impl Origin {
 
     /// The error of a text that is not TOML.
     pub(super) fn locate_syntax(&self, error: &toml::de::Error) -> Error {
-        let Some(source) = &self.0 else { return syntax_error(error) };
+        let Some(source) = &self.0 else { return syntax_error(error, "") };
         let place = error.span().map_or(0, |span| span.start);
-        at_byte(syntax_error(error).in_file(&source.file), &source.text, place)
+        at_byte(syntax_error(error, &source.text).in_file(&source.file), &source.text, place)
     }
 }
 
-/// The sentence of a text that is not TOML.
-pub(super) fn syntax_error(error: &toml::de::Error) -> Error {
+/// The sentence of a text that is not TOML, with the key it happened at.
+pub(super) fn syntax_error(error: &toml::de::Error, text: &str) -> Error {
+    let span = error.span().unwrap_or(0..0);
+    let rest = text.get(span.start..).unwrap_or_default();
     let message = error.message().lines().map(str::trim).collect::<Vec<_>>().join(", ");
-    let code = if message.starts_with("duplicate key") { Code::Duplicate } else { Code::Syntax };
-    Error::new(
-        code,
-        format!("is not valid TOML: {}", if message.is_empty() { "unreadable" } else { &message }),
-    )
+    if message.starts_with("duplicate key") {
+        let key = shortened(text.get(span.clone()).unwrap_or_default());
+        let error = Error::new(Code::Duplicate, "is said a second time in the same table");
+        return if key.is_empty() { error } else { error.at_field(key) };
+    }
+    let error = match message.as_str() {
+        // The parser takes what it cannot understand for text without quotes, or for a misspelt `false`.
+        _ if message.starts_with("string values must be quoted")
+            || message.starts_with("invalid boolean") =>
+        {
+            let found = text.get(span.clone()).unwrap_or_default().lines().next().unwrap_or_default().trim();
+            let sentence = match found {
+                "" => "has no value".to_owned(),
+                _ => format!(
+                    "has `{}` where a value must be; text needs quotes, lists need commas",
+                    shortened(found)
+                ),
+            };
+            Error::new(Code::Syntax, sentence)
+        }
+        "" => Error::new(Code::Syntax, "is not valid TOML"),
+        message => Error::new(
+            Code::Syntax,
+            format!("is not valid TOML: {}", message.trim_end_matches(", expected nothing")),
+        ),
+    };
+    match key_of_line(text, text.len() - rest.len()) {
+        Some(key) => error.at_field(key),
+        None => error,
+    }
+}
+
+/// The key before the `=` that stands left of a byte in its line.
+fn key_of_line(text: &str, byte: usize) -> Option<String> {
+    let line = text.get(..byte)?.rsplit('\n').next()?;
+    let (key, _) = line.split_once('=')?;
+    let key = key.trim();
+    let is_plain = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
+    is_plain.then(|| shortened(key))
 }
 
 /// Adds the line and column of a byte; columns count characters.
