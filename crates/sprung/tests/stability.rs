@@ -41,7 +41,9 @@ fn lattice(n: i32) -> ModelBuilder {
         }
     }
     let points = builder.point_count();
-    builder.connect_within(0..points, 8f32.sqrt() + 0.001, Material { stiffness: 750.0, damping: 10.0 }).unwrap();
+    builder
+        .connect_within(0..points, 8f32.sqrt() + 0.001, Material { stiffness: 750.0, damping: 10.0 })
+        .unwrap();
     builder
 }
 
@@ -85,7 +87,10 @@ fn the_table_of_the_four_scenes() {
         let safe = certified(&model, &params, &state.position).unwrap().dt;
         let ever = every_configuration(&model, &params).unwrap().dt;
         println!("{name}: {found:?} certified {safe} every {ever} auto {}", auto_dt(&model, &params));
-        assert!(ever <= safe && safe <= limit * (1.0 + 1e-9) && safe >= 0.52 * limit, "{name}: {ever} {safe} {limit}");
+        assert!(
+            ever <= safe && safe <= limit * (1.0 + 1e-9) && safe >= 0.52 * limit,
+            "{name}: {ever} {safe} {limit}"
+        );
         assert!(auto_dt(&model, &params) <= ever.min(0.01));
     }
 }
@@ -193,7 +198,11 @@ impl Dense {
         }
         while high - low > 1e-13 * high {
             let middle = 0.5 * (low + high);
-            if self.demand(middle) < 4.0 { low = middle } else { high = middle }
+            if self.demand(middle) < 4.0 {
+                low = middle
+            } else {
+                high = middle
+            }
             if middle == low && middle == high {
                 break;
             }
@@ -218,7 +227,14 @@ fn network(most_points: usize) -> impl Strategy<Value = (Model, Params, Vec<Vec3
         2..most_points,
     );
     let springs = prop::collection::vec(
-        (any::<prop::sample::Index>(), any::<prop::sample::Index>(), -1.0f32..4.0, 0.0f32..4.0, 0.5f32..2.0, 0..12),
+        (
+            any::<prop::sample::Index>(),
+            any::<prop::sample::Index>(),
+            -1.0f32..4.0,
+            0.0f32..4.0,
+            0.5f32..2.0,
+            0..12,
+        ),
         1..4 * most_points,
     );
     let extras = (0.0f32..3.0, 0.0f32..2.0, any::<bool>(), any::<bool>(), any::<bool>());
@@ -263,7 +279,12 @@ fn network(most_points: usize) -> impl Strategy<Value = (Model, Params, Vec<Vec3
         }
         if grab {
             let point = model.point_count() / 2;
-            params.grabs.push(Grab { point, target: Vec3::ZERO, stiffness: 10f32.powf(hard), damping: damped });
+            params.grabs.push(Grab {
+                point,
+                target: Vec3::ZERO,
+                stiffness: 10f32.powf(hard),
+                damping: damped,
+            });
         }
         (model, params, state.position)
     })

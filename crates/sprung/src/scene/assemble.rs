@@ -47,6 +47,15 @@ impl Scene {
             .and_then(|()| Assembly::new(self, max_springs.min(self.spring_limit())).build())
             .map_err(|error| self.origin.locate(error))
     }
+
+    /// Builds the scene and bundles it, ready to step.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn simulation(&self) -> Result<Simulation> {
+        let (model, params, state) = self.build()?;
+        Simulation::new(model, params, state)
+    }
 }
 
 /// A scene being built.

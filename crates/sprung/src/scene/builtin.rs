@@ -39,6 +39,12 @@ pub static BUILTIN: &[Builtin] = &[
     builtin!(Report, "chain"),
     builtin!(Report, "jelly"),
     builtin!(Report, "cloth"),
+    builtin!(Gallery, "flag"),
+    builtin!(Gallery, "bridge"),
+    builtin!(Gallery, "pile"),
+    builtin!(Gallery, "trampoline"),
+    builtin!(Gallery, "valley"),
+    builtin!(Gallery, "beam"),
     builtin!(Benchmark, "cloth512"),
     builtin!(Benchmark, "jelly64"),
 ];

@@ -149,9 +149,15 @@ fn put(here: &mut Value, steps: &[&str], value: &Value, path: &str, fields: &mut
                 };
                 return put(entry, rest, value, &format!("{path}[{index}]"), fields);
             }
-            let mut entries = list.iter_mut().enumerate();
-            entries
-                .try_for_each(|(index, entry)| put(entry, steps, value, &format!("{path}[{index}]"), fields))
+            // All of them; some may have nothing of that name, such as a body without springs, but not every one.
+            let (before, mut nothing) = (fields.len(), None);
+            for (index, entry) in list.iter_mut().enumerate() {
+                match put(entry, steps, value, &format!("{path}[{index}]"), fields) {
+                    Err(error) if error.code() == Code::NotFound => nothing = nothing.or(Some(error)),
+                    done => done?,
+                }
+            }
+            nothing.filter(|_| fields.len() == before).map_or(Ok(()), Err)
         }
         _ => Err(Error::new(Code::WrongType, "is a single value, and has nothing inside").at_field(path)),
     }

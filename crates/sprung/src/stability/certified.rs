@@ -94,7 +94,8 @@ pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<L
             if per_mass == 0.0 {
                 return Load::default();
             }
-            let [omega2, c] = [stiffness[point], damping[point]].map(|sum| sum.largest_eigenvalue() * per_mass);
+            let [omega2, c] =
+                [stiffness[point], damping[point]].map(|sum| sum.largest_eigenvalue() * per_mass);
             Load { omega2, c }
         })
         .collect();
@@ -185,7 +186,8 @@ fn anchor_loads(params: &Params, touches: impl Fn(&Plane, usize) -> bool) -> Vec
     for plane in &params.planes {
         // The normal enters the force twice, and float32 lets it be a little longer than 1.
         let normal = plane.normal.as_dvec3();
-        let load = Load { omega2: f64::from(plane.stiffness), c: f64::from(plane.damping) }.times(normal.dot(normal));
+        let load = Load { omega2: f64::from(plane.stiffness), c: f64::from(plane.damping) }
+            .times(normal.dot(normal));
         for (point, sum) in loads.iter_mut().enumerate() {
             if touches(plane, point) {
                 *sum = *sum + load;

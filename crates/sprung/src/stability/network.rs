@@ -39,8 +39,8 @@ impl Tensor {
     #[inline(always)]
     fn times(&self, weights: Weights, d: DVec3) -> DVec3 {
         let n = self.axis.as_dvec3();
-        let along =
-            weights.stiffness * f64::from(self.stiffness_along) + weights.damping * f64::from(self.damping_along);
+        let along = weights.stiffness * f64::from(self.stiffness_along)
+            + weights.damping * f64::from(self.damping_along);
         let all = weights.stiffness * f64::from(self.stiffness_all);
         d * all + n * (along * n.dot(d))
     }
@@ -141,7 +141,8 @@ impl Network {
         if self.anchors.iter().any(|anchor| anchor.damping_all != 0.0) {
             return None;
         }
-        let tensors = || self.links.iter().map(|link| &link.tensor).chain(self.anchors.iter().map(|a| &a.tensor));
+        let tensors =
+            || self.links.iter().map(|link| &link.tensor).chain(self.anchors.iter().map(|a| &a.tensor));
         let stiffest = tensors().max_by(|a, b| a.stiffness_along.total_cmp(&b.stiffness_along))?;
         if stiffest.stiffness_along <= 0.0 {
             return None;

@@ -46,8 +46,13 @@ impl<'a> TopMode<'a> {
     /// Starts from a vector of pseudo-random numbers, the same every time.
     pub fn new(network: &'a Network) -> Self {
         let points = network.mass.len();
-        let mut iteration =
-            Self { network, x: Pair::zero(points), w: Pair::zero(points), p: Pair::zero(points), products: 0 };
+        let mut iteration = Self {
+            network,
+            x: Pair::zero(points),
+            w: Pair::zero(points),
+            p: Pair::zero(points),
+            products: 0,
+        };
         iteration.add_noise(1.0);
         iteration
     }
@@ -214,7 +219,8 @@ impl Gram {
                 };
             }
         }
-        let lowest = -(0..basis.len()).map(|i| reduced.m[i].iter().map(|entry| entry.abs()).sum::<f64>()).sum::<f64>();
+        let lowest =
+            -(0..basis.len()).map(|i| reduced.m[i].iter().map(|entry| entry.abs()).sum::<f64>()).sum::<f64>();
         for absent in basis.len()..3 {
             reduced.m[absent][absent] = 2.0 * lowest - 1.0;
         }
