@@ -134,6 +134,33 @@ impl Network {
         }
     }
 
+    /// A vector x, of one length per mass at every point, in which each point moves against the neighbours before it:
+    /// as far from them as αK + βC pulls back hardest. In a lattice, where neighbours move against each other in the
+    /// stiffest modes, this is within a few per cent of the largest Rayleigh quotient. `first` gives the directions of points
+    /// without a neighbour before them.
+    pub fn opposed(&self, weights: Weights, first: impl Fn(usize) -> DVec3, x: &mut [DVec3]) {
+        // Until a point is placed, its x gathers the pulls of its placed neighbours.
+        x.fill(DVec3::ZERO);
+        let mut placed = vec![false; x.len()];
+        let place = |point: usize, x: &mut DVec3| {
+            let direction = if *x == DVec3::ZERO { first(point) } else { *x };
+            *x = direction * (self.inverse_mass[point].sqrt() / direction.length());
+        };
+        for Link { ends: [i, j], tensor } in &self.links {
+            let (i, j) = (*i as usize, *j as usize);
+            if !placed[i] {
+                place(i, &mut x[i]);
+                placed[i] = true;
+            }
+            if !placed[j] {
+                x[j] -= tensor.times(weights, x[i]);
+            }
+        }
+        for (point, _) in placed.iter().enumerate().filter(|(_, placed)| !**placed) {
+            place(point, &mut x[point]);
+        }
+    }
+
     /// γ if C = γK to one part in 10⁵, as in a network of one material near its rest shape: then one eigenproblem answers
     /// for all. Compares every tensor's part along and across its axis.
     pub fn damping_per_stiffness(&self) -> Option<f64> {

@@ -27,18 +27,15 @@ pub struct Sharp {
 /// The residual at which an iteration stops. The error of the limit falls with its square.
 const TOLERANCE: f64 = 1e-6;
 
-/// Noise mixed into a mode before the next problem starts from it, relative to the mode's length.
-const NOISE: f64 = 0.3;
-
 /// The springs are held in float32, which changes K and C by up to 1.8e-7. The limit is raised by as much, so that it
 /// stays what the iteration makes it, an upper bound, and is never below the certified one where both are exact.
 const FLOAT32: f64 = 2e-7;
 
-/// Work that all solves together may take, in products with one spring: about a second on one core.
-const SPRING_PRODUCTS: usize = 100_000_000;
+/// Work of one problem, in products with one spring: well under a second on one core.
+const SPRING_PRODUCTS: usize = 60_000_000;
 
-/// Limits of the products with the whole network that all solves together may take.
-const PRODUCTS: [usize; 2] = [30, 6_000];
+/// Limits of the products with the whole network for one problem.
+const PRODUCTS: [usize; 2] = [20, 3_000];
 
 /// The limit on dt in the given configuration: where λ_max(M^(-½)(dt²K + 2dt·C)M^(-½)) = 4.
 ///
@@ -87,70 +84,69 @@ pub fn sharp(model: &Model, params: &Params, positions: &[Vec3]) -> Sharp {
 const STIFFNESS: Weights = Weights { stiffness: 1.0, damping: 0.0 };
 const DAMPING: Weights = Weights { stiffness: 0.0, damping: 1.0 };
 
+/// The demand of dt.
+fn demand(dt: f64) -> Weights {
+    Weights { stiffness: dt * dt, damping: 2.0 * dt }
+}
+
 /// C = γK: all three problems have the same modes.
 fn one_problem(network: &Network, ratio: f64, budget: u32) -> Sharp {
     let mut mode = TopMode::new(network);
+    mode.start(STIFFNESS);
     let Solved { eigenvalue, residual } = mode.solve(STIFFNESS, TOLERANCE, budget);
     let omega2_max = eigenvalue.max(0.0);
     let c_max = ratio * omega2_max;
     Sharp { dt: limit_of_mode(omega2_max, c_max), omega2_max, c_max, residual, iterations: mode.products }
 }
 
-/// The general case: half of the budget for the joint problem, a quarter for each of K and C alone.
+/// The general case: K and C alone, with half of the budget each, as their modes may live in different corners of the
+/// network. Each of the two modes bounds the limit; the joint problem starts from the smaller bound.
 fn three_problems(network: &Network, budget: u32) -> Sharp {
     let mut mode = TopMode::new(network);
-    let mut joint = Joint { dt: None, residual: 0.0 };
-    joint.solve(&mut mode, budget / 2);
-    // K and C alone, each started from the mode before and some noise, as the mode may live in one corner of the
-    // network and the next in another.
     let mut alone = |weights| {
-        mode.add_noise(NOISE);
-        let solved = mode.solve(weights, TOLERANCE, budget / 4);
-        // Their modes bound the limit too. Should the joint iteration have missed one, it goes on from there.
+        mode.start(weights);
+        let eigenvalue = mode.solve(weights, TOLERANCE, budget / 2).eigenvalue.max(0.0);
         let (omega2, c) = mode.quotients();
-        if let Some(dt) = limit_of_mode(omega2, c)
-            && joint.dt.is_none_or(|known| dt < known * (1.0 - TOLERANCE))
-        {
-            joint.solve(&mut mode, budget / 4);
-        }
-        solved.eigenvalue.max(0.0)
+        (eigenvalue, limit_of_mode(omega2, c))
     };
-    let omega2_max = alone(STIFFNESS);
-    let c_max = alone(DAMPING);
-    Sharp { dt: joint.dt, omega2_max, c_max, residual: joint.residual, iterations: mode.products }
+    let (omega2_max, of_stiffest) = alone(STIFFNESS);
+    let (c_max, of_most_damped) = alone(DAMPING);
+
+    let bound = [of_stiffest, of_most_damped].into_iter().flatten().reduce(f64::min);
+    let joint = bound.map(|bound| joint_problem(&mut mode, bound, budget));
+    Sharp {
+        dt: joint.map(|(dt, _)| dt),
+        omega2_max,
+        c_max,
+        residual: joint.map_or(0.0, |(_, residual)| residual),
+        iterations: mode.products,
+    }
 }
 
-/// The joint problem: the dt at which the largest eigenvalue of M⁻¹(dt²K + 2dt·C) is 4.
-struct Joint {
-    dt: Option<f64>,
-    residual: f64,
-}
-
-impl Joint {
-    /// Lowers dt from the current mode on: the top mode at this dt, the dt at which that mode reaches its limit, and
-    /// again. Each round's dt is at least the limit and at most the last, and its error is the square of the last.
-    fn solve(&mut self, mode: &mut TopMode, budget: u32) {
-        let end = mode.products + budget;
-        // The first rounds need not be exact, as their dt is not.
-        let mut round_budget = 8;
-        let mut converged = false;
-        loop {
-            let (omega2, c) = mode.quotients();
-            let Some(dt) = limit_of_mode(omega2, c) else { return };
-            let settled = converged && self.dt.is_some_and(|last| dt >= last * (1.0 - TOLERANCE));
-            self.dt = Some(self.dt.map_or(dt, |last| last.min(dt)));
-            if settled || mode.products >= end {
-                return;
-            }
-            if converged {
-                // What was on top at the last dt need not be at this one, and a converged x has lost all else.
-                mode.add_noise(NOISE);
-            }
-            let weights = Weights { stiffness: dt * dt, damping: 2.0 * dt };
-            let left = end - mode.products;
-            self.residual = mode.solve(weights, TOLERANCE, left.min(round_budget)).residual;
-            converged = self.residual <= TOLERANCE;
-            round_budget *= 2;
+/// Lowers dt from a bound to where the largest eigenvalue of M⁻¹(dt²K + 2dt·C) is 4; gives it and the last residual.
+///
+/// In turns: the top mode at this dt, then the dt at which that mode reaches its limit. No turn goes below the limit,
+/// and each leaves an error that is about the square of the last.
+fn joint_problem(mode: &mut TopMode, bound: f64, budget: u32) -> (f64, f64) {
+    let end = mode.products + budget;
+    let mut dt = bound;
+    // The first turns need not be exact, as their dt is not.
+    let mut turn_budget = 8;
+    mode.start(demand(dt));
+    loop {
+        let left = end.saturating_sub(mode.products);
+        let residual = mode.solve(demand(dt), TOLERANCE, left.min(turn_budget)).residual;
+        let (omega2, c) = mode.quotients();
+        let next = limit_of_mode(omega2, c).map_or(dt, |next| next.min(dt));
+        let converged = residual <= TOLERANCE;
+        let settled = converged && next >= dt * (1.0 - TOLERANCE);
+        dt = next;
+        if settled || mode.products >= end {
+            return (dt, residual);
         }
+        if converged {
+            mode.add_noise(); // what was on top at the last dt need not be at this one
+        }
+        turn_budget *= 2;
     }
 }

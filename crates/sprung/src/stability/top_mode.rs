@@ -33,6 +33,9 @@ pub(super) struct TopMode<'a> {
     pub products: u32,
 }
 
+/// Length of the noise mixed into a vector, relative to the vector's.
+const NOISE: f64 = 0.3;
+
 /// How a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Solved {
@@ -43,23 +46,20 @@ pub(super) struct Solved {
 }
 
 impl<'a> TopMode<'a> {
-    /// Starts from a vector of pseudo-random numbers, the same every time.
+    /// The memory of an iteration: six vectors.
     pub fn new(network: &'a Network) -> Self {
-        let points = network.mass.len();
-        let mut iteration = Self {
-            network,
-            x: Pair::zero(points),
-            w: Pair::zero(points),
-            p: Pair::zero(points),
-            products: 0,
-        };
-        iteration.add_noise(1.0);
-        iteration
+        let pair = Pair::zero(network.mass.len());
+        Self { network, x: pair.clone(), w: pair.clone(), p: pair, products: 0 }
     }
 
-    /// Adds noise of the given length, relative to that of x: a converged x has lost every other mode, and can only
-    /// find one of them again with some of it mixed in.
-    pub fn add_noise(&mut self, amount: f64) {
+    /// Sets x to a good guess of the top mode, with some of every other mode mixed in.
+    pub fn start(&mut self, weights: Weights) {
+        self.network.opposed(weights, noise, &mut self.x.v);
+        self.add_noise();
+    }
+
+    /// Adds noise: a converged x has lost every other mode, and can only find one again with some of it mixed in.
+    pub fn add_noise(&mut self) {
         let Network { mass, inverse_mass, .. } = self.network;
         let noise = |point: usize| noise(point) * inverse_mass[point].sqrt();
         let squared_length = |v: DVec3, mass: f64| v.dot(v) * mass;
@@ -70,7 +70,7 @@ impl<'a> TopMode<'a> {
         }
         if noise_length2 > 0.0 {
             let length = if length2 > 0.0 { length2.sqrt() } else { 1.0 };
-            let scale = amount * length / noise_length2.sqrt();
+            let scale = NOISE * length / noise_length2.sqrt();
             self.x.v.iter_mut().enumerate().for_each(|(point, x)| *x += noise(point) * scale);
         }
     }
@@ -219,8 +219,7 @@ impl Gram {
                 };
             }
         }
-        let lowest =
-            -(0..basis.len()).map(|i| reduced.m[i].iter().map(|entry| entry.abs()).sum::<f64>()).sum::<f64>();
+        let lowest = -(0..basis.len()).map(|i| reduced.m[i].iter().map(|entry| entry.abs()).sum::<f64>()).sum::<f64>();
         for absent in basis.len()..3 {
             reduced.m[absent][absent] = 2.0 * lowest - 1.0;
         }
@@ -244,7 +243,7 @@ fn product(gram: &[[f64; 3]; 3], u: [f64; 3], v: [f64; 3]) -> f64 {
     sum
 }
 
-/// Three numbers in −1…1 from a point's index: the mixing function of SplitMix64 (Steele, Lea, Flood 2014).
+/// Three numbers in −1…1, never all zero, from a point's index: the mixing function of SplitMix64 (Steele, Lea, Flood 2014).
 fn noise(point: usize) -> DVec3 {
     let component = |axis: u64| {
         let mut z = (3 * point as u64 + axis + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
