@@ -1,2 +1,117 @@
-//! What CI runs.
-fn main() {}
+//! What continuous integration runs, in Rust: `cargo xtask ci`, or one stage of it by its name.
+//!
+//! A stage is one function in [`stages`] and one line in [`STAGES`]; the list feeds the help, the dispatch and `ci`.
+
+// Printing is what this program is for.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod shell;
+mod stages;
+
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use shell::Outcome;
+
+/// One thing that can be right or wrong about the repository.
+struct Stage {
+    name: &'static str,
+    about: &'static str,
+    run: fn() -> Outcome,
+}
+
+/// All stages, in the order `ci` runs them: what fails quickly comes first.
+const STAGES: &[Stage] = &[
+    Stage { name: "fmt", about: "the code is formatted", run: stages::fmt },
+    Stage {
+        name: "clippy",
+        about: "no compiler or clippy warning, in any target or feature",
+        run: stages::clippy,
+    },
+    Stage { name: "doc", about: "the API documentation builds without warnings", run: stages::doc },
+    Stage {
+        name: "release-tests",
+        about: "all tests, optimised: the same bits as in debug",
+        run: stages::release_tests,
+    },
+    Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
+    Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
+    Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
+    Stage {
+        name: "licences",
+        about: "licences, duplicates and sources of dependencies",
+        run: stages::licences,
+    },
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let chosen: Vec<&Stage> = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] | ["help" | "--help" | "-h"] => {
+            print!("{}", help());
+            return ExitCode::SUCCESS;
+        }
+        ["ci"] => STAGES.iter().collect(),
+        [name] => match STAGES.iter().find(|stage| stage.name == name) {
+            Some(stage) => vec![stage],
+            None => {
+                eprintln!("xtask: there is no stage \"{name}\"\n\n{}", help());
+                return ExitCode::from(2);
+            }
+        },
+        _ => {
+            eprintln!("xtask: one stage at a time\n\n{}", help());
+            return ExitCode::from(2);
+        }
+    };
+    run(&chosen)
+}
+
+/// Runs stages until one fails, then sums up.
+fn run(chosen: &[&Stage]) -> ExitCode {
+    let mut lines = Vec::new();
+    let mut failure = None;
+    for stage in chosen {
+        if failure.is_some() {
+            lines.push(format!("  {:<15} not run", stage.name));
+            continue;
+        }
+        println!("\n=== {}: {}", stage.name, stage.about);
+        let start = Instant::now();
+        let outcome = (stage.run)();
+        let seconds = seconds(start.elapsed());
+        match outcome {
+            Ok(()) => {
+                println!("=== {}: passed in {seconds}", stage.name);
+                lines.push(format!("  {:<15} passed  {seconds:>9}", stage.name));
+            }
+            Err(reason) => {
+                lines.push(format!("  {:<15} FAILED  {seconds:>9}", stage.name));
+                failure = Some(format!("{} failed: {reason}", stage.name));
+            }
+        }
+    }
+    println!("\n{}", lines.join("\n"));
+    match failure {
+        None => ExitCode::SUCCESS,
+        Some(failure) => {
+            println!("\nxtask: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.1} s", time.as_secs_f64())
+}
+
+fn help() -> String {
+    let mut text =
+        "What continuous integration runs.\n\n  cargo xtask ci       all stages below, in this order\n"
+            .to_owned();
+    text += "  cargo xtask STAGE    one of them\n\nStages:\n";
+    for stage in STAGES {
+        text += &format!("  {:<15} {}\n", stage.name, stage.about);
+    }
+    text
+}
