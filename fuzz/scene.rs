@@ -1,12 +1,14 @@
 //! Random bytes for the scene parser: no input may crash it, hang it or take more memory than was allowed.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
+mod lines;
+
+use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use sprung::scene::Scene;
 
 /// Enough for every branch of the code that builds scenes, and little enough for thousands of scenes a second.
-const MAX_POINTS: u64 = 500;
-const MAX_SPRINGS: u64 = 5_000;
+const MAX_POINTS: u64 = 100;
+const MAX_SPRINGS: u64 = 1_000;
 
 fuzz_target!(|bytes: &[u8]| {
     let scene = match Scene::from_bytes(bytes, "fuzz.toml") {
@@ -27,4 +29,14 @@ fuzz_target!(|bytes: &[u8]| {
         // What is built, a simulation accepts.
         sprung::Simulation::new(model, params, state).expect("a scene that builds is valid");
     }
+});
+
+fuzz_mutator!(|bytes: &mut [u8], length: usize, max_length: usize, seed: u32| {
+    if seed % 2 == 0 {
+        return fuzzer_mutate(bytes, length, max_length);
+    }
+    let mut changed = lines::mutate(&bytes[..length], seed);
+    changed.truncate(max_length);
+    bytes[..changed.len()].copy_from_slice(&changed);
+    changed.len()
 });
