@@ -1,0 +1,55 @@
+//! Draws the four scenes, and two large ones, into a folder, to be looked at: `cargo run --release --example look FOLDER`.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example for people")]
+
+#[path = "../tests/scenes/mod.rs"]
+mod scenes;
+
+use std::path::Path;
+use std::time::Instant;
+
+use sprung_io::{Frame, Options};
+use sprung_render::export::exporter_for;
+
+fn main() -> sprung::Result<()> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "look".to_owned());
+    let only = std::env::args().nth(2).unwrap_or_default();
+    let make = [
+        ("spring.png", scenes::spring(30)),
+        ("spring.gif", scenes::spring(30)),
+        ("chain.png", scenes::chain(30)),
+        ("jelly.png", scenes::jelly(10, 30)),
+        ("jelly-early.png", scenes::jelly(10, 30)),
+        ("jelly.gif", scenes::jelly(10, 60)),
+        ("jelly.mp4", scenes::jelly(10, 60)),
+        ("cloth.png", scenes::cloth(20, 30)),
+        ("cloth.gif", scenes::cloth(20, 30)),
+        ("jelly-large.png", scenes::jelly(40, 3)),
+        ("cloth-large.png", scenes::cloth(256, 3)),
+        ("small.png", scenes::jelly(10, 3)),
+    ];
+    for (name, motion) in make.iter().filter(|(name, _)| name.contains(&only)) {
+        let path = Path::new(&folder).join(name);
+        let begin = Instant::now();
+        let mut options = Options::default();
+        if name.contains("early") {
+            options.at = Some(0.0);
+        }
+        if name.contains("small") {
+            options.size = Some([320, 180]);
+        }
+        let mut output = match (exporter_for(&path)?.open)(&path, &motion.info, &options) {
+            Ok(output) => output,
+            Err(error) => {
+                eprintln!("{error}");
+                continue;
+            }
+        };
+        for (index, snapshot) in motion.moments.iter().enumerate() {
+            let params = &motion.info.params;
+            output.frame(&Frame { index: index as u64, snapshot, params, energy: None })?;
+        }
+        let written = output.finish(&mut |_| {})?;
+        println!("{}: {} bytes, {:.2} s", written.path.display(), written.bytes, begin.elapsed().as_secs_f64());
+    }
+    Ok(())
+}

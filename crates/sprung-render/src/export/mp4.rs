@@ -1,0 +1,135 @@
+//! `.mp4`: a film, encoded by ffmpeg where that is installed.
+
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use sprung::{Code, Error, Result};
+use sprung_io::files::write_error;
+use sprung_io::{Export, Exporter, Frame, Options, PartialFile, RunInfo, Written};
+
+use super::picture_size;
+use super::png::no_frames;
+use super::spool::Spool;
+
+/// A film.
+pub const MP4: Exporter = Exporter { ending: "mp4", description: "a film (needs ffmpeg)", open };
+
+/// Frames per second that players cope with.
+const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
+
+fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
+    // Asked before the simulation, which may take long, and not after it.
+    let answer = Command::new("ffmpeg").arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    if !answer.is_ok_and(|status| status.success()) {
+        let error = Error::new(Code::Unsupported, "a film is encoded by ffmpeg, and there is none on this machine");
+        return Err(error.with_fix("install ffmpeg, or write a .gif").in_file(path.display().to_string()));
+    }
+    // The colour of two by two pixels is stored together, so both sides must be even.
+    let size = picture_size(path, options, [1280, 720])?.map(|side| side & !1);
+    Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info)?, size }))
+}
+
+struct Film {
+    file: PartialFile,
+    spool: Spool,
+    size: [u32; 2],
+}
+
+impl Export for Film {
+    fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
+        self.spool.push(frame)
+    }
+
+    fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written> {
+        let Self { file, mut spool, size } = *self;
+        let path = file.path().to_owned();
+        if spool.times().is_empty() {
+            return Err(no_frames(&path));
+        }
+        let rate = (1.0 / spool.info().frame_time).clamp(RATE_RANGE.0, RATE_RANGE.1);
+        let mut encoder = Encoder::start(file.partial_path(), size, rate).map_err(|error| write_error(&path, &error))?;
+        let view = spool.view(size);
+        let frames: Vec<usize> = (0..spool.times().len()).collect();
+        let mut broken = false;
+        let drawn = spool.draw(&view, &frames, |image| image.rgb, |index, rgb| {
+            if encoder.write(&rgb).is_err() {
+                broken = true; // ffmpeg closed its end; its own words say why
+                return Err(Error::new(Code::Unwritable, "ffmpeg stopped"));
+            }
+            progress((index + 1) as f64 / frames.len() as f64);
+            Ok(())
+        });
+        // ffmpeg's own words come first: when it stops, every other error is a consequence.
+        match encoder.finish() {
+            Err(reason) if broken || drawn.is_ok() => {
+                let sentence = format!("cannot be written: ffmpeg stopped with \"{reason}\"");
+                return Err(Error::new(Code::Unwritable, sentence).in_file(path.display().to_string()));
+            }
+            _ => drawn?,
+        }
+        let bytes = file.finish()?;
+        Ok(Written { path, bytes, frames: frames.len() as u64 })
+    }
+}
+
+/// A running ffmpeg. Dropped unfinished it is ended.
+struct Encoder {
+    child: Child,
+    /// Reads what ffmpeg complains about, so that it never waits for us to.
+    complaints: Option<std::thread::JoinHandle<String>>,
+}
+
+impl Encoder {
+    fn start(output: &Path, [width, height]: [u32; 2], rate: f64) -> std::io::Result<Self> {
+        let mut command = Command::new("ffmpeg");
+        command.args(["-hide_banner", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
+        command.args(["-video_size", &format!("{width}x{height}"), "-framerate", &format!("{rate:.6}"), "-i", "pipe:0"]);
+        command.args(["-an", "-c:v", "libx264", "-crf", "18", "-preset", "medium"]);
+        // Say which matrix turns RGB into what films hold, or players guess and the colours drift.
+        command.args(["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv420p"]);
+        command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]);
+        command.args(["-movflags", "+faststart", "-f", "mp4"]).arg(output);
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+        // Ctrl-C in a terminal reaches every process of the group; the film so far should still be completed.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn()?;
+        let complaints = child.stderr.take().map(|mut pipe| {
+            std::thread::spawn(move || {
+                let mut bytes = Vec::new();
+                let _ = pipe.read_to_end(&mut bytes);
+                String::from_utf8_lossy(&bytes).into_owned()
+            })
+        });
+        Ok(Self { child, complaints })
+    }
+
+    fn write(&mut self, rgb: &[u8]) -> std::io::Result<()> {
+        self.child.stdin.as_mut().map_or(Ok(()), |pipe| pipe.write_all(rgb))
+    }
+
+    /// Waits for the end; if it is not a good one, gives the last line ffmpeg said.
+    fn finish(&mut self) -> Result<(), String> {
+        drop(self.child.stdin.take());
+        let status = self.child.wait();
+        let said = self.complaints.take().and_then(|thread| thread.join().ok()).unwrap_or_default();
+        match status {
+            Ok(status) if status.success() => Ok(()),
+            Ok(status) => {
+                let last = said.lines().map(str::trim).rfind(|line| !line.is_empty());
+                Err(last.map_or_else(|| status.to_string(), str::to_owned))
+            }
+            Err(error) => Err(error.to_string()),
+        }
+    }
+}
+
+impl Drop for Encoder {
+    fn drop(&mut self) {
+        if self.complaints.is_some() {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
