@@ -49,7 +49,12 @@ fn main() -> sprung::Result<()> {
             output.frame(&Frame { index: index as u64, snapshot, params, energy: None })?;
         }
         let written = output.finish(&mut |_| {})?;
-        println!("{}: {} bytes, {:.2} s", written.path.display(), written.bytes, begin.elapsed().as_secs_f64());
+        println!(
+            "{}: {} bytes, {:.2} s",
+            written.path.display(),
+            written.bytes,
+            begin.elapsed().as_secs_f64()
+        );
     }
     Ok(())
 }

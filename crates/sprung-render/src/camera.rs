@@ -84,15 +84,44 @@ pub struct Camera {
     pub near: f32,
 }
 
-impl Camera {
-    /// Frames a box inside a rectangle of the picture (two corners, pixels).
-    ///
-    /// Flat motions, such as a pendulum's, are seen nearly from the front; others from above and aside.
-    pub fn framing(bounds: &Bounds, low: Vec2, high: Vec2) -> Self {
-        let size = bounds.size();
-        let flat = size.z < 0.15 * size.x.max(size.y);
+/// From where a motion is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Nearly from the front: for flat motions, such as a pendulum's.
+    Front,
+    /// From above and aside.
+    Corner,
+}
+
+/// The tightest view of some points, grown point by point.
+///
+/// Seen along the view's axis, all points must fit between four planes through the eye with slopes ±tan. For each pair of
+/// planes only the outermost point counts, so four numbers are enough, however long the motion; and the tightest place of
+/// the eye has a closed form: the farther of the two distances serves both pairs.
+#[derive(Clone, Copy, Debug)]
+pub struct Framing {
+    /// Right, up, along the view.
+    axes: [DVec3; 3],
+    /// Slopes of the side planes, and of those above and below.
+    tan: [f64; 2],
+    /// Largest offset right of (above) the falling plane, smallest of the rising one, m.
+    most: [f64; 2],
+    least: [f64; 2],
+    /// The nearest point along the view, m.
+    nearest: f64,
+    /// The rectangle of the picture that is to be filled, pixels.
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Framing {
+    /// Begins a view that fills a rectangle of the picture (two corners, pixels).
+    pub fn new(side: Side, low: Vec2, high: Vec2) -> Self {
         // Sine and cosine of azimuth and elevation, as right-angled triangles: nothing to round differently.
-        let (azimuth, elevation) = if flat { ((5.0, 12.0), (9.0, 40.0)) } else { ((20.0, 21.0), (20.0, 48.0)) };
+        let (azimuth, elevation) = match side {
+            Side::Front => ((5.0, 14.0), (9.0, 40.0)),
+            Side::Corner => ((20.0, 21.0), (20.0, 48.0)),
+        };
         let [(sin_a, cos_a), (sin_e, cos_e)] = [azimuth, elevation].map(|(a, b): (f64, f64)| {
             let length = (a * a + b * b).sqrt();
             (a / length, b / length)
@@ -100,30 +129,70 @@ impl Camera {
         let forward = -DVec3::new(sin_a * cos_e, sin_e, cos_a * cos_e);
         let right = DVec3::new(cos_a, 0.0, -sin_a);
         let up = right.cross(forward);
-
-        // Seen along the view's axis, the box must fit between four planes through the eye with slopes ±tan. For each
-        // pair of planes the tightest place of the eye has a closed form; the farther of the two distances serves both.
         let area = (high - low).max(Vec2::ONE).as_dvec2();
-        let (tan_y, tan_x) = (TAN_HALF_HEIGHT, TAN_HALF_HEIGHT * area.x / area.y);
-        let extremes = |axis: DVec3, tan: f64| {
-            let corners = bounds.corners().map(|corner| corner.as_dvec3());
-            let upper = corners.iter().map(|c| c.dot(axis) - tan * c.dot(forward)).fold(f64::MIN, f64::max);
-            let lower = corners.iter().map(|c| c.dot(axis) + tan * c.dot(forward)).fold(f64::MAX, f64::min);
-            (0.5 * (upper + lower), (lower - upper) / (2.0 * tan))
-        };
-        let ((x, z_for_x), (y, z_for_y)) = (extremes(right, tan_x), extremes(up, tan_y));
-        let longest = f64::from(size.max_element()).max(1e-6);
-        let z = z_for_x.min(z_for_y) - 0.01 * longest;
-        let eye = right * x + up * y + forward * z;
         Self {
-            eye: eye.as_vec3(),
-            axes: [right.as_vec3(), up.as_vec3(), forward.as_vec3()],
-            focal: (0.5 * area.y / tan_y) as f32,
-            middle: 0.5 * (low + high),
-            near: (0.01 * longest) as f32,
+            axes: [right, up, forward],
+            tan: [TAN_HALF_HEIGHT * area.x / area.y, TAN_HALF_HEIGHT],
+            most: [f64::MIN; 2],
+            least: [f64::MAX; 2],
+            nearest: f64::MAX,
+            low,
+            high,
         }
     }
 
+    /// Makes room for a ball; one that is not finite is left out.
+    pub fn include(&mut self, centre: Vec3, radius: f32) {
+        if !centre.is_finite() {
+            return;
+        }
+        let centre = centre.as_dvec3();
+        let along = centre.dot(self.axes[2]);
+        self.nearest = self.nearest.min(along - f64::from(radius));
+        for pair in 0..2 {
+            let (across, tan) = (centre.dot(self.axes[pair]), self.tan[pair]);
+            let room = f64::from(radius) * (1.0 + tan * tan).sqrt();
+            self.most[pair] = self.most[pair].max(across - tan * along + room);
+            self.least[pair] = self.least[pair].min(across + tan * along - room);
+        }
+    }
+
+    /// Makes every ball so far larger by `radius`, m.
+    pub fn grow(&mut self, radius: f32) {
+        self.nearest -= f64::from(radius);
+        for pair in 0..2 {
+            let room = f64::from(radius) * (1.0 + self.tan[pair] * self.tan[pair]).sqrt();
+            self.most[pair] += room;
+            self.least[pair] -= room;
+        }
+    }
+
+    /// The camera. Without any point, it sees a ball of 1 m around the origin.
+    pub fn camera(&self) -> Camera {
+        let mut tight = *self;
+        if tight.nearest == f64::MAX {
+            tight.include(Vec3::ZERO, 1.0);
+        }
+        let [right, up, forward] = tight.axes;
+        let middle = |pair: usize| 0.5 * (tight.most[pair] + tight.least[pair]);
+        let back = |pair: usize| (tight.least[pair] - tight.most[pair]) / (2.0 * tight.tan[pair]);
+        let distance = back(0).min(back(1));
+        // A hair further back than exact, for rounding; a single point is given some distance.
+        let gap = (tight.nearest - distance).max(0.0);
+        let distance = distance - 0.003 * gap - 1e-6 * (1.0 + distance.abs());
+        let eye = right * middle(0) + up * middle(1) + forward * distance;
+        let height = f64::from((tight.high.y - tight.low.y).max(1.0));
+        Camera {
+            eye: eye.as_vec3(),
+            axes: [right.as_vec3(), up.as_vec3(), forward.as_vec3()],
+            focal: (0.5 * height / TAN_HALF_HEIGHT) as f32,
+            middle: 0.5 * (tight.low + tight.high),
+            near: (0.2 * (tight.nearest - distance)).max(1e-9) as f32,
+        }
+    }
+}
+
+impl Camera {
     /// A direction in the camera's own space.
     pub fn turn(&self, direction: Vec3) -> Vec3 {
         let [right, up, forward] = self.axes;
@@ -150,22 +219,35 @@ impl Camera {
 mod tests {
     use super::*;
 
+    fn framing(side: Side, bounds: &Bounds, low: Vec2, high: Vec2) -> Camera {
+        let mut framing = Framing::new(side, low, high);
+        bounds.corners().into_iter().for_each(|corner| framing.include(corner, 0.0));
+        framing.camera()
+    }
+
     #[test]
-    fn every_point_of_the_box_lies_inside_the_frame() {
+    fn every_point_lies_inside_the_frame() {
         let boxes = [
             (Vec3::new(-14.0, -12.0, -14.0), Vec3::new(14.0, 20.0, 14.0)),
             (Vec3::new(-28.0, -3.0, 0.0), Vec3::new(28.0, 25.0, 0.0)),
             (Vec3::ZERO, Vec3::ZERO),
             (Vec3::splat(-1e6), Vec3::splat(1e6)),
-            (Vec3::splat(100.0), Vec3::splat(100.001)),
+            (Vec3::splat(100.0), Vec3::splat(100.1)),
         ];
-        for (low, high) in boxes {
+        let (from, to) = (Vec2::new(20.0, 60.0), Vec2::new(620.0, 300.0));
+        for (side, (low, high)) in
+            boxes.into_iter().flat_map(|pair| [(Side::Front, pair), (Side::Corner, pair)])
+        {
             let bounds = Bounds { low, high };
-            let (from, to) = (Vec2::new(20.0, 60.0), Vec2::new(620.0, 300.0));
-            let camera = Camera::framing(&bounds, from, to);
+            let camera = framing(side, &bounds, from, to);
             for corner in bounds.corners() {
-                let seen = camera.project(corner).unwrap_or_else(|| panic!("{corner} is in front of the camera"));
-                assert!(seen.pixel.cmpge(from).all() && seen.pixel.cmple(to).all(), "{corner}: {:?}", seen.pixel);
+                let seen =
+                    camera.project(corner).unwrap_or_else(|| panic!("{corner} is in front of the camera"));
+                assert!(
+                    seen.pixel.cmpge(from).all() && seen.pixel.cmple(to).all(),
+                    "{corner}: {:?}",
+                    seen.pixel
+                );
             }
         }
     }
@@ -173,19 +255,22 @@ mod tests {
     #[test]
     fn the_frame_is_filled_in_one_direction_at_least() {
         let bounds = Bounds { low: Vec3::splat(-1.0), high: Vec3::splat(1.0) };
-        let camera = Camera::framing(&bounds, Vec2::ZERO, Vec2::new(1600.0, 900.0));
+        let camera = framing(Side::Corner, &bounds, Vec2::ZERO, Vec2::new(1600.0, 900.0));
         let heights = bounds.corners().map(|corner| camera.project(corner).map_or(0.0, |seen| seen.pixel.y));
         let (low, high) = heights.iter().fold((f32::MAX, f32::MIN), |(l, h), &y| (l.min(y), h.max(y)));
-        assert!(low < 30.0 && high > 870.0, "{low} to {high}");
+        assert!(low < 10.0 && high > 890.0, "{low} to {high}");
     }
 
     #[test]
     fn points_that_are_not_finite_are_left_out() {
         let mut bounds = Bounds::default();
-        bounds.include(Vec3::ONE);
-        bounds.include(Vec3::new(f32::NAN, 0.0, 0.0));
+        let mut framing = Framing::new(Side::Front, Vec2::ZERO, Vec2::ONE);
+        for point in [Vec3::ONE, Vec3::new(f32::NAN, 0.0, 0.0)] {
+            bounds.include(point);
+            framing.include(point, 0.1);
+        }
         assert_eq!(bounds, Bounds { low: Vec3::ONE, high: Vec3::ONE });
-        let camera = Camera::framing(&bounds, Vec2::ZERO, Vec2::ONE);
-        assert_eq!(camera.project(Vec3::splat(f32::INFINITY)), None);
+        assert!(framing.camera().project(Vec3::ONE).is_some());
+        assert_eq!(framing.camera().project(Vec3::splat(f32::INFINITY)), None);
     }
 }

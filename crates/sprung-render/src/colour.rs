@@ -8,11 +8,15 @@ use glam::Vec3;
 pub type Colour = Vec3;
 
 /// Colour of springs that push (negative force).
-pub const COMPRESSION: u32 = 0x15_5f_c4;
+pub const COMPRESSION: u32 = 0x0b_47_a8;
+/// Halfway there.
+const COMPRESSION_HALF: u32 = 0x5b_9d_e8;
 /// Colour of springs without force.
-pub const NEUTRAL: u32 = 0xb9_bb_bd;
+pub const NEUTRAL: u32 = 0xb4_b7_ba;
+/// Halfway to tension.
+const TENSION_HALF: u32 = 0xf0_96_3c;
 /// Colour of springs that pull (positive force).
-pub const TENSION: u32 = 0xd9_4a_10;
+pub const TENSION: u32 = 0xc8_32_08;
 
 /// Ink of titles.
 pub const INK: u32 = 0x22_2b_36;
@@ -43,9 +47,10 @@ pub fn to_srgb(colour: Colour) -> [u8; 3] {
 pub fn diverging(value: f32) -> Colour {
     let strength = value.abs().min(1.0);
     let end = srgb(if value < 0.0 { COMPRESSION } else { TENSION });
-    // A little faster than linear near zero, so that small forces are seen at all.
-    let eased = strength * (1.6 - 0.6 * strength);
-    srgb(NEUTRAL).lerp(end, eased)
+    // Through a lighter shade of the same hue; faster than linear near zero, so that small forces are seen at all.
+    let half = srgb(if value < 0.0 { COMPRESSION_HALF } else { TENSION_HALF });
+    let eased = strength * (1.5 - 0.5 * strength);
+    if eased < 0.5 { srgb(NEUTRAL).lerp(half, 2.0 * eased) } else { half.lerp(end, 2.0 * eased - 1.0) }
 }
 
 fn decode(value: f32) -> f32 {

@@ -18,14 +18,14 @@ const CLOSEST_PIXELS: f32 = 6.0;
 const MOST_WIRES: usize = 400_000;
 
 /// Balls of the bodies, in turn.
-const BALLS: [u32; 6] = [0x2f_7f_8c, 0x7a_5c_9e, 0x5a_8a_3c, 0xb0_6a_84, 0x8a_74_4a, 0x4a_6f_a8];
+const BALLS: [u32; 6] = [0x12_7a_8a, 0x76_4d_a6, 0x4c_8a_26, 0xb8_55_7c, 0x8c_6c_2c, 0x34_63_ae];
 /// Balls of fixed points.
 pub const FIXED: u32 = 0x1f_24_2b;
 /// Front and back of cloth, with wires on it and without.
-const CLOTH_PALE: [u32; 2] = [0xe9_ee_ec, 0xe6_d6_c2];
-const CLOTH_RICH: [u32; 2] = [0x2b_8c_8f, 0xe2_9a_5b];
+const CLOTH_PALE: [u32; 2] = [0xf6_ee_e0, 0xb9_d4_de];
+const CLOTH_RICH: [u32; 2] = [0x1f_8f_94, 0xec_9a_50];
 /// Skin of solids that are too fine for balls and wires.
-const SKIN: [u32; 2] = [0x3f_9c_8c, 0x20_50_48];
+const SKIN: [u32; 2] = [0x2a_a3_90, 0x18_58_4e];
 
 /// What is drawn of a model, and how large: chosen once for a motion.
 #[derive(Clone, Debug)]
@@ -59,12 +59,11 @@ impl Look {
     /// Chooses for a model; `extent` (m) is the size of the motion, for models without springs.
     pub fn new(model: &Model, extent: f32, full_force: f32) -> Self {
         let points = model.point_count();
-        let spacing = median(model.spring_rest_length()).unwrap_or_else(|| {
-            extent / libm::cbrtf(points as f32).max(4.0)
-        });
+        let spacing = median(model.spring_rest_length())
+            .unwrap_or_else(|| extent / libm::cbrtf(points as f32).max(4.0));
         let few = points <= 40;
         Self {
-            ball: if few { 0.16 } else { 0.13 } * spacing,
+            ball: if points <= 4 { 0.09 } else { 0.16 } * spacing,
             spacing,
             full_force,
             any_wires: false,
@@ -87,7 +86,8 @@ impl Look {
     /// The shapes of one moment.
     pub fn shapes(&self, model: &Model, params: &Params, positions: &[Vec3], camera: &Camera) -> Shapes {
         let mut shapes = Shapes::default();
-        let seen: Vec<Option<Projected>> = positions.iter().map(|&position| camera.project(position)).collect();
+        let seen: Vec<Option<Projected>> =
+            positions.iter().map(|&position| camera.project(position)).collect();
         let open = if self.any_wires { openness(model, positions) } else { vec![1.0; positions.len()] };
         self.add_wires(&mut shapes, model, params, positions, camera, &open);
         self.add_balls(&mut shapes, model, params, camera, &seen, &open);
@@ -98,7 +98,9 @@ impl Look {
     /// Springs that are drawn.
     fn wires<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = usize> + 'a {
         let bodies = model.bodies().iter().zip(&self.body_in_detail).filter(|(_, detail)| **detail);
-        let ranges = bodies.map(|(body, _)| body.springs.clone()).chain(model.joints().iter().map(|joint| joint.springs.clone()));
+        let ranges = bodies
+            .map(|(body, _)| body.springs.clone())
+            .chain(model.joints().iter().map(|joint| joint.springs.clone()));
         ranges.flatten().take(MOST_WIRES)
     }
 
@@ -111,7 +113,9 @@ impl Look {
         seen: &[Option<Projected>],
         open: &[f32],
     ) {
-        for (index, body) in model.bodies().iter().enumerate().filter(|(index, _)| self.body_in_detail[*index]) {
+        for (index, body) in
+            model.bodies().iter().enumerate().filter(|(index, _)| self.body_in_detail[*index])
+        {
             let colour = srgb(BALLS[index % BALLS.len()]);
             for point in body.points.clone() {
                 let Some(Projected { pixel, depth }) = seen[point] else { continue };
@@ -204,7 +208,15 @@ impl Look {
 }
 
 /// A piece of wire between two places, at least `thinnest` pixels in radius.
-fn wire(camera: &Camera, a: Vec3, b: Vec3, radius: f32, thinnest: f32, colour: Colour, open: f32) -> Option<Capsule> {
+fn wire(
+    camera: &Camera,
+    a: Vec3,
+    b: Vec3,
+    radius: f32,
+    thinnest: f32,
+    colour: Colour,
+    open: f32,
+) -> Option<Capsule> {
     let ends = [camera.project(a)?, camera.project(b)?];
     let along = camera.turn(b - a);
     // To the side of the wire as the picture shows it, as the rasteriser measures it, and from there towards the viewer.
@@ -228,14 +240,14 @@ fn wire(camera: &Camera, a: Vec3, b: Vec3, radius: f32, thinnest: f32, colour: C
 
 /// The path of a coil spring from `a` to `b`: two straight leads and a helix whose turns stay when it is stretched.
 fn coil(a: Vec3, b: Vec3, rest: f32, ball: f32) -> Vec<Vec3> {
-    const TURNS: usize = 9;
-    const STEPS: usize = 20;
+    const TURNS: usize = 11;
+    const STEPS: usize = 24;
     let axis = b - a;
     let length = axis.length();
     let along = axis.normalize_or(Vec3::Y);
     let side = along.any_orthonormal_vector();
     let other = along.cross(side);
-    let radius = 0.085 * rest;
+    let radius = 0.11 * rest;
     let lead = (1.4 * ball).min(0.25 * length);
     let mut path = vec![a];
     for step in 0..=TURNS * STEPS {

@@ -92,11 +92,13 @@ impl Ground {
                 continue;
             }
             let foot = position - self.slant * height.max(0.0) - self.origin;
-            let at = (Vec2::new(foot.dot(self.along[0]), foot.dot(self.along[1])) + self.shadow_reach) / texel;
+            let at =
+                (Vec2::new(foot.dot(self.along[0]), foot.dot(self.along[1])) + self.shadow_reach) / texel;
             let weight = footprint * fade * fade;
             let height = height.abs();
             let upper = usize::from(height >= heights[1]);
-            let share = ((height - heights[upper]) / (heights[upper + 1] - heights[upper]).max(1e-9)).clamp(0.0, 1.0);
+            let share =
+                ((height - heights[upper]) / (heights[upper + 1] - heights[upper]).max(1e-9)).clamp(0.0, 1.0);
             splat(&mut layers[upper], at, weight * (1.0 - share));
             splat(&mut layers[upper + 1], at, weight * share);
         }
@@ -113,7 +115,12 @@ impl Ground {
     }
 
     /// What the rays of a row of pixels meet.
-    pub fn row<'a>(&'a self, camera: &Camera, shadow: &'a Shadow, y: f32) -> impl Fn(f32) -> Option<Hit> + use<'a> {
+    pub fn row<'a>(
+        &'a self,
+        camera: &Camera,
+        shadow: &'a Shadow,
+        y: f32,
+    ) -> impl Fn(f32) -> Option<Hit> + use<'a> {
         // In the camera's space the ray of pixel (x, y) is direction·z with direction = (dx, dy, 1). It meets the plane at
         // z = height / (direction·normal); the place along the plane is a fraction whose parts are linear in x and y.
         let normal = camera.turn(self.plane.normal);
@@ -138,8 +145,14 @@ impl Ground {
             // How far the place moves from pixel to pixel, for lines of an even width.
             let scale = depth * inverse_focal;
             let steps = [
-                Vec2::new(axes[0].x - (place.x + offset.x) / depth * normal.x / slope, axes[0].y - (place.x + offset.x) / depth * normal.y / slope),
-                Vec2::new(axes[1].x - (place.y + offset.y) / depth * normal.x / slope, axes[1].y - (place.y + offset.y) / depth * normal.y / slope),
+                Vec2::new(
+                    axes[0].x - (place.x + offset.x) / depth * normal.x / slope,
+                    axes[0].y - (place.x + offset.x) / depth * normal.y / slope,
+                ),
+                Vec2::new(
+                    axes[1].x - (place.y + offset.y) / depth * normal.x / slope,
+                    axes[1].y - (place.y + offset.y) / depth * normal.y / slope,
+                ),
             ];
             let widths = Vec2::new(steps[0].length(), steps[1].length()) * scale;
             Some(self.paint(place, widths, far, depth, shadow))
@@ -159,7 +172,7 @@ impl Ground {
             (1.1 - distance).clamp(0.0, 1.0) * crowd
         };
         let lines = |step| line(place.x, widths.x, step).max(line(place.y, widths.y, step));
-        let strongest = (0.22 * lines(self.grid)).max(0.36 * lines(5.0 * self.grid));
+        let strongest = (0.32 * lines(self.grid)).max(0.5 * lines(5.0 * self.grid));
         let mut hit = Hit { depth, colour: srgb(0xfb_fc_fd), alpha: 0.5 * fade };
         hit.cover(srgb(0x4a_58_68), strongest * fade);
         let texel = (place + self.shadow_reach) * (SHADOW_SIDE as f32 / (2.0 * self.shadow_reach));

@@ -109,7 +109,8 @@ fn distance_to_segment(p: Vec2, a: Vec2, b: Vec2) -> f32 {
 
 /// The drawn pieces of a line; all of it if there is no dash pattern.
 fn dashes(points: &[Vec2], dash: &[f32]) -> Vec<(Vec2, Vec2)> {
-    let pieces = points.windows(2).map(|pair| (pair[0], pair[1])).filter(|(a, b)| a.is_finite() && b.is_finite());
+    let pieces =
+        points.windows(2).map(|pair| (pair[0], pair[1])).filter(|(a, b)| a.is_finite() && b.is_finite());
     if dash.is_empty() || dash.iter().any(|&length| length < 0.5) {
         return pieces.collect();
     }

@@ -32,7 +32,7 @@ impl Finish {
     /// Points.
     pub const BALL: Self = Self { gloss: 0.35, edge: 0.55 };
     /// Springs.
-    pub const WIRE: Self = Self { gloss: 0.12, edge: 0.45 };
+    pub const WIRE: Self = Self { gloss: 0.10, edge: 0.35 };
     /// Cloth and skins.
     pub const FABRIC: Self = Self { gloss: 0.05, edge: 0.25 };
 }
@@ -42,14 +42,14 @@ impl Studio {
     pub fn new(camera: &Camera, up: Vec3) -> Self {
         // The key light stands over the viewer's left shoulder.
         let [right, above, forward] = camera.axes;
-        let world_key = (up * 1.5 + above * 0.2 - right * 0.75 - forward * 0.9).normalize_or(up);
+        let world_key = (up * 1.2 + above * 0.2 - right * 0.7 - forward * 1.3).normalize_or(up);
         let key = camera.turn(world_key);
         Self {
             key,
             half: (key - Vec3::Z).normalize_or(-Vec3::Z),
             up: camera.turn(up),
-            sky: Vec3::new(0.52, 0.56, 0.62),
-            floor: Vec3::new(0.23, 0.21, 0.20),
+            sky: Vec3::new(0.60, 0.63, 0.68),
+            floor: Vec3::new(0.36, 0.34, 0.33),
             sun: Vec3::new(0.72, 0.69, 0.64),
         }
     }

@@ -1,31 +1,55 @@
 //! What a picture must know of the whole motion before the first frame is drawn: its extent and its forces.
 
 use sprung::{Model, Params, Vec3};
+use sprung_io::RunInfo;
 
-use crate::camera::Bounds;
+use crate::camera::{Bounds, Framing, Side};
+use crate::overlay::free_area;
 
 /// Springs looked at for the colour scale; of more, an even selection.
 const SPRINGS_SAMPLED: usize = 100_000;
 
 /// Extent and forces of a motion, grown frame by frame.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Motion {
+    /// The size of the pictures, pixels.
+    pub(crate) size: [u32; 2],
     /// The box around every position so far.
     pub bounds: Bounds,
+    /// How the two sides would see it.
+    front: Framing,
+    corner: Framing,
     /// The largest spring force so far, N, but for the strongest hundredth of a frame's springs.
     pub force: f32,
     scratch: Vec<f32>,
 }
 
 impl Motion {
+    /// No motion yet, to be shown in pictures of this size (width and height in pixels).
+    pub fn new(info: &RunInfo, size: [u32; 2]) -> Self {
+        let (low, high) = free_area(info, size);
+        let [front, corner] = [Side::Front, Side::Corner].map(|side| Framing::new(side, low, high));
+        Self { size, bounds: Bounds::default(), front, corner, force: 0.0, scratch: Vec::new() }
+    }
+
+    /// The view that suits the motion: nearly from the front if it is flat.
+    pub(crate) fn framing(&self) -> Framing {
+        let size = self.bounds.grown(0.0).size();
+        if size.z < 0.15 * size.x.max(size.y) { self.front } else { self.corner }
+    }
+
     /// Takes one frame in.
     pub fn include(&mut self, model: &Model, params: &Params, positions: &[Vec3]) {
-        positions.iter().for_each(|&position| self.bounds.include(position));
+        for &position in positions {
+            self.bounds.include(position);
+            self.front.include(position, 0.0);
+            self.corner.include(position, 0.0);
+        }
         let stride = model.spring_count().div_ceil(SPRINGS_SAMPLED).max(1);
         self.scratch.clear();
-        let forces = (0..model.spring_count()).step_by(stride).map(|spring| {
-            spring_force(model, params, positions, spring).abs()
-        });
+        let forces = (0..model.spring_count())
+            .step_by(stride)
+            .map(|spring| spring_force(model, params, positions, spring).abs());
         self.scratch.extend(forces.filter(|force| force.is_finite()));
         if let Some(last) = self.scratch.len().checked_sub(1) {
             let (_, &mut force, _) = self.scratch.select_nth_unstable_by(last - last / 100, f32::total_cmp);

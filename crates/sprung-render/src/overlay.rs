@@ -29,7 +29,12 @@ pub struct Overlay {
 
 impl Overlay {
     /// Lays out what stays the same; `grid` is the distance between the ground's lines, m.
-    pub fn new(info: &RunInfo, [width, height]: [u32; 2], full_force: Option<f32>, grid: Option<f32>) -> Self {
+    pub fn new(
+        info: &RunInfo,
+        [width, height]: [u32; 2],
+        full_force: Option<f32>,
+        grid: Option<f32>,
+    ) -> Self {
         let size = Vec2::new(width as f32, height as f32);
         let unit = size.y.min(size.x * 0.7);
         let margin = (0.036 * unit).max(6.0);
@@ -50,7 +55,7 @@ impl Overlay {
     }
 
     /// The corners of the part of the picture that is left for the scene, pixels.
-    pub fn free_area(&self) -> (Vec2, Vec2) {
+    fn free_area(&self) -> (Vec2, Vec2) {
         let margin = Vec2::splat(self.margin);
         if !self.shown {
             return (0.5 * margin, self.size - 0.5 * margin);
@@ -119,10 +124,18 @@ impl Overlay {
     }
 }
 
+/// The corners of the part of a picture that its text leaves free, pixels.
+pub fn free_area(info: &RunInfo, size: [u32; 2]) -> (Vec2, Vec2) {
+    // The grid's size is not known yet; a number as long as any keeps room for it.
+    Overlay::new(info, size, None, (!info.params.planes.is_empty()).then_some(0.002)).free_area()
+}
+
 /// The parameters, each as a short phrase.
 fn facts(info: &RunInfo, grid: Option<f32>) -> Vec<String> {
     let Params { dt, substeps, planes, .. } = &info.params;
-    let plural = |count: usize, thing: &str| format!("{} {thing}{}", text::count(count), if count == 1 { "" } else { "s" });
+    let plural = |count: usize, thing: &str| {
+        format!("{} {thing}{}", text::count(count), if count == 1 { "" } else { "s" })
+    };
     let mut facts = vec![
         plural(info.model.point_count(), "point"),
         plural(info.model.spring_count(), "spring"),

@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn a_palette_holds_the_colours_it_was_shown() {
         let mut image = Image::new([64, 64], srgb(0xe8_ec_f0));
-        for (x, colour) in [(3, 0xd9_4a_10), (4, 0x15_5f_c4), (5, 0x22_2b_36)] {
+        for (x, colour) in [(3, 0xc8_32_08), (4, 0x0b_47_a8), (5, 0x22_2b_36)] {
             (0..64).for_each(|y| image.blend(x, y, srgb(colour), 1.0));
         }
         let palette = Palette::learn(std::slice::from_ref(&image));

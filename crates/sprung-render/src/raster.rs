@@ -12,7 +12,8 @@ use crate::light::{Finish, Studio};
 /// Where the samples of a pixel lie: the usual rotated grids, as multisampling hardware has them.
 pub const SAMPLES_4: [Vec2; 4] = [at(6, 2), at(14, 6), at(2, 10), at(10, 14)];
 /// Eight samples, no two of them in a row or column.
-pub const SAMPLES_8: [Vec2; 8] = [at(9, 5), at(7, 11), at(13, 9), at(5, 3), at(3, 13), at(1, 7), at(11, 15), at(15, 1)];
+pub const SAMPLES_8: [Vec2; 8] =
+    [at(9, 5), at(7, 11), at(13, 9), at(5, 3), at(3, 13), at(1, 7), at(11, 15), at(15, 1)];
 
 const fn at(x: u8, y: u8) -> Vec2 {
     Vec2::new(x as f32 / 16.0, y as f32 / 16.0)
@@ -222,7 +223,9 @@ impl<'a, const N: usize> Band<'a, N> {
                     |offset| {
                         let [u, v, w] = weights(corner + offset);
                         let inside = u >= 0.0 && v >= 0.0 && w >= 0.0;
-                        inside.then(|| 1.0 / (u * inverse_depths[0] + v * inverse_depths[1] + w * inverse_depths[2]))
+                        inside.then(|| {
+                            1.0 / (u * inverse_depths[0] + v * inverse_depths[1] + w * inverse_depths[2])
+                        })
                     },
                     |studio, offset| {
                         let [u, v, w] = weights(corner + offset);
@@ -294,14 +297,13 @@ fn mix([a, b]: [f32; 2], share: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Bounds, Camera};
+    use crate::camera::{Framing, Side};
     use crate::colour::srgb;
 
     const HAZE: Haze = Haze { colour: Colour::ONE, begin: 1e3, end: 2e3, strength: 0.0 };
 
     fn studio() -> Studio {
-        let bounds = Bounds { low: Vec3::splat(-1.0), high: Vec3::splat(1.0) };
-        Studio::new(&Camera::framing(&bounds, Vec2::ZERO, Vec2::new(32.0, 32.0)), Vec3::Y)
+        Studio::new(&Framing::new(Side::Corner, Vec2::ZERO, Vec2::splat(32.0)).camera(), Vec3::Y)
     }
 
     fn ball(x: f32, depth: f32, colour: u32) -> Sphere {
@@ -319,7 +321,8 @@ mod tests {
         assert!(colours[0].x > 0.3 && colours[0].x > 3.0 * colours[0].y, "{:?}", colours[0]);
         assert_eq!(band.pixel(16, 5).0, &[f32::INFINITY; 4]);
         assert_eq!(band.pixel(23, 23).0, &[f32::INFINITY; 4]);
-        let covered: usize = (0..1024).map(|i| band.pixel(i % 32, i / 32).0.iter().filter(|d| d.is_finite()).count()).sum();
+        let covered: usize =
+            (0..1024).map(|i| band.pixel(i % 32, i / 32).0.iter().filter(|d| d.is_finite()).count()).sum();
         let area = covered as f32 / 4.0;
         assert!((area - 201.0).abs() < 4.0, "π·8² is 201 pixels, found {area}");
     }

@@ -97,7 +97,8 @@ pub fn draw(image: &mut Image, text: &str, place: Vec2, anchor: Anchor, style: S
 /// Visits each glyph with how far it hangs below the baseline and how far the pen moves on.
 fn layout(text: &str, size: f32, mut visit: impl FnMut(&ab_glyph::Glyph, f32, f32)) {
     for piece in pieces(text) {
-        let (scale, sink) = if piece.subscript { (size * SUBSCRIPT.0, size * SUBSCRIPT.1) } else { (size, 0.0) };
+        let (scale, sink) =
+            if piece.subscript { (size * SUBSCRIPT.0, size * SUBSCRIPT.1) } else { (size, 0.0) };
         let scaled = font().as_scaled(PxScale::from(scale));
         let mut letters = piece.text.chars().peekable();
         while let Some(letter) = letters.next() {
@@ -160,7 +161,8 @@ mod tests {
 
     #[test]
     fn subscripts_are_set_apart() {
-        let found: Vec<_> = pieces("k_s, k_{c,d}").into_iter().map(|piece| (piece.text, piece.subscript)).collect();
+        let found: Vec<_> =
+            pieces("k_s, k_{c,d}").into_iter().map(|piece| (piece.text, piece.subscript)).collect();
         let expected = [("k", false), ("s", true), (", k", false), ("c,d", true)];
         assert_eq!(found, expected.map(|(text, subscript)| (text.to_owned(), subscript)));
         assert!(width("k_s", 20.0) < width("ks", 20.0));
@@ -171,9 +173,9 @@ mod tests {
         let mut image = Image::new([60, 30], srgb(0xff_ff_ff));
         let style = Style { size: 24.0, colour: srgb(0), strong: false };
         draw(&mut image, "H", Vec2::new(30.0, 24.0), Anchor::Middle, style);
-        let dark = (0..60).flat_map(|x| (0..30).map(move |y| (x, y))).filter(|&(x, y)| {
-            image.pixel(x, y).is_some_and(|rgb| rgb[0] < 128)
-        });
+        let dark = (0..60)
+            .flat_map(|x| (0..30).map(move |y| (x, y)))
+            .filter(|&(x, y)| image.pixel(x, y).is_some_and(|rgb| rgb[0] < 128));
         assert!(dark.count() > 15);
     }
 }

@@ -45,39 +45,44 @@ pub struct SceneView {
 
 impl SceneView {
     /// Chooses camera, look and text for a motion.
-    pub fn new(info: &RunInfo, motion: &Motion, size: [u32; 2], quality: Quality) -> Self {
+    pub fn new(info: &RunInfo, motion: &Motion, quality: Quality) -> Self {
         let (model, params) = (&info.model, &info.params);
         let extent = motion.bounds.grown(0.0).size().max_element();
         let full_force = nice_above(motion.force);
         let mut look = Look::new(model, extent, full_force);
-        let bare = motion.bounds.grown(1.3 * look.ball.max(1e-3 * extent));
+        let bounds = motion.bounds.grown(1.3 * look.ball.max(1e-3 * extent));
+        let mut framing = motion.framing();
+        framing.grow(1.4 * look.ball);
 
-        // A plane near the motion belongs to the picture: the foot of every corner not too high above it.
-        let mut bounds = bare;
-        let grounds: Vec<Ground> = params.planes.iter().map(|plane| Ground::new(plane, &bare)).collect();
-        let reach = 0.6 * bare.size().length();
+        // A plane near the motion belongs to the picture, so the place below its middle is framed as well.
+        let grounds: Vec<Ground> = params.planes.iter().map(|plane| Ground::new(plane, &bounds)).collect();
         for plane in &params.planes {
-            for corner in bare.corners() {
-                let depth = plane.depth(corner);
-                if depth < 0.0 && depth > -reach {
-                    bounds.include(corner + plane.normal * depth);
-                }
+            let height = -plane.depth(bounds.centre());
+            if height > 0.0 && height < bounds.size().length() {
+                framing.include(bounds.centre() - plane.normal * height, 0.0);
             }
         }
-
-        let grid = grounds.first().map(Ground::grid);
-        // The look decides whether there is a legend, the legend's room decides the camera, and the camera the look.
-        let overlay = Overlay::new(info, size, Some(full_force), grid);
-        let (low, high) = overlay.free_area();
-        let camera = Camera::framing(&bounds, low, high);
+        let camera = framing.camera();
         look.choose_detail(model, &camera, bounds.centre());
-        let overlay = Overlay::new(info, size, look.any_wires.then_some(full_force), grid);
+        let legend = look.any_wires.then_some(full_force);
+        let overlay = Overlay::new(info, motion.size, legend, grounds.first().map(Ground::grid));
 
         let depths = bounds.corners().map(|corner| camera.view(corner).z);
-        let (begin, end) = depths.iter().fold((f32::MAX, f32::MIN), |(b, e), &depth| (b.min(depth), e.max(depth)));
-        let haze = Haze { colour: srgb(0xe4_ea_f0), begin, end: end.max(begin + 1e-6), strength: 0.42 };
+        let (begin, end) =
+            depths.iter().fold((f32::MAX, f32::MIN), |(b, e), &depth| (b.min(depth), e.max(depth)));
+        let haze = Haze { colour: srgb(0xe4_ea_f0), begin, end: end.max(begin + 1e-6), strength: 0.26 };
         let studio = Studio::new(&camera, (-params.gravity).normalize_or(Vec3::Y));
-        Self { model: Arc::clone(model), size, quality, camera, studio, haze, grounds, look, overlay }
+        Self {
+            model: Arc::clone(model),
+            size: motion.size,
+            quality,
+            camera,
+            studio,
+            haze,
+            grounds,
+            look,
+            overlay,
+        }
     }
 
     /// The picture of one moment: positions in m, time in s, and the parameters at that time.
@@ -135,7 +140,8 @@ impl SceneView {
         let mut hits: Vec<Hit> = Vec::new();
         for (x, bytes) in bytes.chunks_exact_mut(3).enumerate() {
             let aside = 2.0 * (x as f32 + 0.5) / width - 1.0;
-            let behind = backdrop((y as f32 + 0.5) / height, 0.5 * (aside * aside + from_middle * from_middle));
+            let behind =
+                backdrop((y as f32 + 0.5) / height, 0.5 * (aside * aside + from_middle * from_middle));
             hits.clear();
             hits.extend(rays.iter().filter_map(|ray| ray(x as f32 + 0.5)));
             hits.sort_by(|a, b| b.depth.total_cmp(&a.depth)); // the farthest first

@@ -15,7 +15,8 @@ use crate::image::Image;
 use crate::quantise::Palette;
 
 /// An animation for everywhere.
-pub const GIF: Exporter = Exporter { ending: "gif", description: "an animation that plays in real time and loops", open };
+pub const GIF: Exporter =
+    Exporter { ending: "gif", description: "an animation that plays in real time and loops", open };
 
 /// The shortest delay that browsers respect, hundredths of a second.
 const SHORTEST: u64 = 2;
@@ -24,7 +25,7 @@ const FEWEST: usize = 12;
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     let size = picture_size(path, options, [800, 450])?;
-    Ok(Box::new(Animation { file: PartialFile::create(path)?, spool: Spool::new(path, info)?, size }))
+    Ok(Box::new(Animation { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
 }
 
 struct Animation {
@@ -46,33 +47,44 @@ impl Export for Animation {
         let (Some(&(first, _)), Some(&(last, _))) = (schedule.first(), schedule.last()) else {
             return Err(no_frames(&path));
         };
-        let view = spool.view(size);
+        let view = spool.view();
 
         // The palette is learnt from five pictures spread over the motion.
         let mut lessons: Vec<usize> = (0..5).map(|part| first + (last - first) * part / 4).collect();
         lessons.dedup();
         let mut pictures = Vec::new();
-        spool.draw(&view, &lessons, |image| image, |_, image| {
-            pictures.push(image);
-            Ok(())
-        })?;
+        spool.draw(
+            &view,
+            &lessons,
+            |image| image,
+            |_, image| {
+                pictures.push(image);
+                Ok(())
+            },
+        )?;
         let palette = Palette::learn(&pictures);
         drop(pictures);
 
         let [width, height] = size.map(|side| side as u16); // at most 8192
-        let mut encoder = gif::Encoder::new(&mut file, width, height, palette.rgb()).map_err(encoding).map_err(fail)?;
+        let mut encoder =
+            gif::Encoder::new(&mut file, width, height, palette.rgb()).map_err(encoding).map_err(fail)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(encoding).map_err(fail)?;
         let frames: Vec<usize> = schedule.iter().map(|&(frame, _)| frame).collect();
         let mut before: Vec<u8> = Vec::new();
-        spool.draw(&view, &frames, |image: Image| palette.indices(&image), |index, indices| {
-            let mut frame = changed_part(&before, &indices, width, palette.transparent());
-            frame.delay = schedule[index].1;
-            encoder.write_frame(&frame).map_err(encoding).map_err(fail)?;
-            drop(frame);
-            before = indices;
-            progress((index + 1) as f64 / frames.len() as f64);
-            Ok(())
-        })?;
+        spool.draw(
+            &view,
+            &frames,
+            |image: Image| palette.indices(&image),
+            |index, indices| {
+                let mut frame = changed_part(&before, &indices, width, palette.transparent());
+                frame.delay = schedule[index].1;
+                encoder.write_frame(&frame).map_err(encoding).map_err(fail)?;
+                drop(frame);
+                before = indices;
+                progress((index + 1) as f64 / frames.len() as f64);
+                Ok(())
+            },
+        )?;
         drop(encoder);
         let bytes = file.finish()?;
         Ok(Written { path, bytes, frames: frames.len() as u64 })
@@ -168,7 +180,8 @@ mod tests {
 
     #[test]
     fn rounding_is_carried_on() {
-        let delays: Vec<u16> = schedule(&times(60, 1.0 / 30.0), 1.0 / 30.0).iter().map(|&(_, delay)| delay).collect();
+        let delays: Vec<u16> =
+            schedule(&times(60, 1.0 / 30.0), 1.0 / 30.0).iter().map(|&(_, delay)| delay).collect();
         assert_eq!(delays[..6], [3, 4, 3, 3, 4, 3]);
     }
 

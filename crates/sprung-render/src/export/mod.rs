@@ -27,12 +27,16 @@ pub const SIZE_RANGE: RangeInclusive<u32> = 16..=8192;
 /// [`Code::Unsupported`], listing the endings there are.
 pub fn exporter_for(path: &Path) -> Result<&'static Exporter> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let known = ending.as_deref().and_then(|ending| EXPORTERS.iter().find(|exporter| exporter.ending == ending));
+    let known =
+        ending.as_deref().and_then(|ending| EXPORTERS.iter().find(|exporter| exporter.ending == ending));
     known.ok_or_else(|| {
         let found = ending.map_or("no ending".to_owned(), |ending| format!("the ending .{ending}"));
         let endings: Vec<String> = EXPORTERS.iter().map(|exporter| format!(".{}", exporter.ending)).collect();
-        Error::new(Code::Unsupported, format!("has {found}, and the endings that can be written are {}", endings.join(", ")))
-            .in_file(path.display().to_string())
+        Error::new(
+            Code::Unsupported,
+            format!("has {found}, and the endings that can be written are {}", endings.join(", ")),
+        )
+        .in_file(path.display().to_string())
     })
 }
 

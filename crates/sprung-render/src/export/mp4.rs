@@ -20,14 +20,20 @@ const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     // Asked before the simulation, which may take long, and not after it.
-    let answer = Command::new("ffmpeg").arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let answer = Command::new("ffmpeg")
+        .arg("-version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
     if !answer.is_ok_and(|status| status.success()) {
-        let error = Error::new(Code::Unsupported, "a film is encoded by ffmpeg, and there is none on this machine");
+        let error =
+            Error::new(Code::Unsupported, "a film is encoded by ffmpeg, and there is none on this machine");
         return Err(error.with_fix("install ffmpeg, or write a .gif").in_file(path.display().to_string()));
     }
     // The colour of two by two pixels is stored together, so both sides must be even.
     let size = picture_size(path, options, [1280, 720])?.map(|side| side & !1);
-    Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info)?, size }))
+    Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
 }
 
 struct Film {
@@ -48,18 +54,24 @@ impl Export for Film {
             return Err(no_frames(&path));
         }
         let rate = (1.0 / spool.info().frame_time).clamp(RATE_RANGE.0, RATE_RANGE.1);
-        let mut encoder = Encoder::start(file.partial_path(), size, rate).map_err(|error| write_error(&path, &error))?;
-        let view = spool.view(size);
+        let mut encoder =
+            Encoder::start(file.partial_path(), size, rate).map_err(|error| write_error(&path, &error))?;
+        let view = spool.view();
         let frames: Vec<usize> = (0..spool.times().len()).collect();
         let mut broken = false;
-        let drawn = spool.draw(&view, &frames, |image| image.rgb, |index, rgb| {
-            if encoder.write(&rgb).is_err() {
-                broken = true; // ffmpeg closed its end; its own words say why
-                return Err(Error::new(Code::Unwritable, "ffmpeg stopped"));
-            }
-            progress((index + 1) as f64 / frames.len() as f64);
-            Ok(())
-        });
+        let drawn = spool.draw(
+            &view,
+            &frames,
+            |image| image.rgb,
+            |index, rgb| {
+                if encoder.write(&rgb).is_err() {
+                    broken = true; // ffmpeg closed its end; its own words say why
+                    return Err(Error::new(Code::Unwritable, "ffmpeg stopped"));
+                }
+                progress((index + 1) as f64 / frames.len() as f64);
+                Ok(())
+            },
+        );
         // ffmpeg's own words come first: when it stops, every other error is a consequence.
         match encoder.finish() {
             Err(reason) if broken || drawn.is_ok() => {
@@ -83,12 +95,38 @@ struct Encoder {
 impl Encoder {
     fn start(output: &Path, [width, height]: [u32; 2], rate: f64) -> std::io::Result<Self> {
         let mut command = Command::new("ffmpeg");
-        command.args(["-hide_banner", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24"]);
-        command.args(["-video_size", &format!("{width}x{height}"), "-framerate", &format!("{rate:.6}"), "-i", "pipe:0"]);
+        command.args([
+            "-hide_banner",
+            "-nostdin",
+            "-loglevel",
+            "error",
+            "-y",
+            "-f",
+            "rawvideo",
+            "-pix_fmt",
+            "rgb24",
+        ]);
+        command.args([
+            "-video_size",
+            &format!("{width}x{height}"),
+            "-framerate",
+            &format!("{rate:.6}"),
+            "-i",
+            "pipe:0",
+        ]);
         command.args(["-an", "-c:v", "libx264", "-crf", "18", "-preset", "medium"]);
         // Say which matrix turns RGB into what films hold, or players guess and the colours drift.
         command.args(["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-pix_fmt", "yuv420p"]);
-        command.args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]);
+        command.args([
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+            "-color_range",
+            "tv",
+        ]);
         command.args(["-movflags", "+faststart", "-f", "mp4"]).arg(output);
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
         // Ctrl-C in a terminal reaches every process of the group; the film so far should still be completed.

@@ -13,19 +13,27 @@ use crate::motion::Motion;
 use crate::view::{Quality, SceneView};
 
 /// A single picture.
-pub const PNG: Exporter =
-    Exporter { ending: "png", description: "a picture of the last frame, or of the one nearest to --at", open };
+pub const PNG: Exporter = Exporter {
+    ending: "png",
+    description: "a picture of the last frame, or of the one nearest to --at",
+    open,
+};
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     let size = picture_size(path, options, [1280, 720])?;
     let file = PartialFile::create(path)?;
-    Ok(Box::new(Picture { file, info: info.clone(), size, at: options.at, motion: Motion::default(), chosen: None }))
+    Ok(Box::new(Picture {
+        file,
+        info: info.clone(),
+        at: options.at,
+        motion: Motion::new(info, size),
+        chosen: None,
+    }))
 }
 
 struct Picture {
     file: PartialFile,
     info: RunInfo,
-    size: [u32; 2],
     at: Option<f64>,
     motion: Motion,
     chosen: Option<(Snapshot, Params)>,
@@ -50,7 +58,7 @@ impl Export for Picture {
 
     fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written> {
         let Some((snapshot, params)) = &self.chosen else { return Err(no_frames(self.file.path())) };
-        let view = SceneView::new(&self.info, &self.motion, self.size, Quality::Still);
+        let view = SceneView::new(&self.info, &self.motion, Quality::Still);
         let image = view.picture(params, snapshot.time, &snapshot.positions);
         progress(0.8);
         let mut file = self.file;

@@ -32,8 +32,8 @@ pub struct Spool {
 }
 
 impl Spool {
-    /// Begins a spool in the folder of `path`.
-    pub fn new(path: &Path, info: &RunInfo) -> Result<Self> {
+    /// Begins a spool in the folder of `path`, for pictures of this size.
+    pub fn new(path: &Path, info: &RunInfo, size: [u32; 2]) -> Result<Self> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let file = tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))?;
         Ok(Self {
@@ -42,7 +42,7 @@ impl Spool {
             file: BufWriter::with_capacity(1 << 18, file),
             times: Vec::new(),
             params: Vec::new(),
-            motion: Motion::default(),
+            motion: Motion::new(info, size),
             bytes: Vec::new(),
         })
     }
@@ -75,8 +75,8 @@ impl Spool {
     }
 
     /// The view of the whole motion so far.
-    pub fn view(&self, size: [u32; 2]) -> SceneView {
-        SceneView::new(&self.info, &self.motion, size, Quality::Motion)
+    pub fn view(&self) -> SceneView {
+        SceneView::new(&self.info, &self.motion, Quality::Motion)
     }
 
     /// Draws the given frames side by side on all threads, and hands what `make` makes of each on in their order.
@@ -120,7 +120,11 @@ impl Spool {
         });
         read.map_err(|error| write_error(&self.path, &error))?;
         let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-        Ok(self.bytes.chunks_exact(12).map(|b| Vec3::new(value(&b[..4]), value(&b[4..8]), value(&b[8..]))).collect())
+        Ok(self
+            .bytes
+            .chunks_exact(12)
+            .map(|b| Vec3::new(value(&b[..4]), value(&b[4..8]), value(&b[8..])))
+            .collect())
     }
 }
 

@@ -12,7 +12,15 @@ pub struct Motion {
     pub moments: Vec<Snapshot>,
 }
 
-fn motion(name: &str, title: &str, builder: ModelBuilder, tune: impl Fn(&mut Params), bend: impl Fn(f32, Vec3) -> Vec3, moments: usize, frame_time: f64) -> Motion {
+fn motion(
+    name: &str,
+    title: &str,
+    builder: ModelBuilder,
+    tune: impl Fn(&mut Params),
+    bend: impl Fn(f32, Vec3) -> Vec3,
+    moments: usize,
+    frame_time: f64,
+) -> Motion {
     let (model, mut params, state): (_, _, State) = builder.build().expect("the scene is sound");
     tune(&mut params);
     let moment = |index: usize| {
@@ -21,7 +29,13 @@ fn motion(name: &str, title: &str, builder: ModelBuilder, tune: impl Fn(&mut Par
         let velocities = vec![Vec3::ZERO; positions.len()];
         Snapshot { step: index as u64, time: index as f64 * frame_time, positions, velocities }
     };
-    let info = RunInfo { scene: name.to_owned(), title: title.to_owned(), model: Arc::new(model), params, frame_time };
+    let info = RunInfo {
+        scene: name.to_owned(),
+        title: title.to_owned(),
+        model: Arc::new(model),
+        params,
+        frame_time,
+    };
     Motion { info, moments: (0..moments).map(moment).collect() }
 }
 
@@ -36,14 +50,24 @@ pub fn spring(moments: usize) -> Motion {
         let side = 0.9 * share * (1.0 - share) * 4.0;
         Vec3::new(-place.y * side, place.y * stretch, 0.0)
     };
-    motion("spring", "A mass on a spring", builder, |params| (params.dt, params.substeps) = (0.01, 7), bend, moments, 0.07)
+    motion(
+        "spring",
+        "A mass on a spring",
+        builder,
+        |params| (params.dt, params.substeps) = (0.01, 7),
+        bend,
+        moments,
+        0.07,
+    )
 }
 
 /// A chain that falls from level to hanging.
 pub fn chain(moments: usize) -> Motion {
     let mut builder = ModelBuilder::new();
     for i in 0..15 {
-        builder.add_point(Vec3::new(2.0 * i as f32, 25.0, 0.0), if i == 0 { 0.0 } else { 1.0 }).expect("allowed");
+        builder
+            .add_point(Vec3::new(2.0 * i as f32, 25.0, 0.0), if i == 0 { 0.0 } else { 1.0 })
+            .expect("allowed");
     }
     builder.connect_within(0..15, 2.0, Material { stiffness: 200.0, damping: 3.0 }).expect("allowed");
     let bend = |share: f32, place: Vec3| {
@@ -53,7 +77,15 @@ pub fn chain(moments: usize) -> Motion {
         let angle = turn * (0.45 + 0.55 * place.x / 28.0);
         Vec3::new(length * libm::cosf(angle), 25.0 - length * libm::sinf(angle), 0.0)
     };
-    motion("chain", "A chain pendulum", builder, |params| (params.dt, params.substeps) = (0.01, 7), bend, moments, 0.07)
+    motion(
+        "chain",
+        "A chain pendulum",
+        builder,
+        |params| (params.dt, params.substeps) = (0.01, 7),
+        bend,
+        moments,
+        0.07,
+    )
 }
 
 /// A cube of jelly of n³ points that falls on a plane, sinks in and bulges.
@@ -72,7 +104,9 @@ pub fn jelly(n: usize, moments: usize) -> Motion {
         builder.add_point(turn(place), 1.0).expect("allowed");
     }
     let radius = scale * 8f32.sqrt() / 2.0 + 0.001;
-    builder.connect_within(0..n * n * n, radius, Material { stiffness: 750.0, damping: 10.0 }).expect("allowed");
+    builder
+        .connect_within(0..n * n * n, radius, Material { stiffness: 750.0, damping: 10.0 })
+        .expect("allowed");
     let mut skin = Vec::new();
     for (a, b) in (0..n - 1).flat_map(|a| (0..n - 1).map(move |b| (a, b))) {
         let mut quad = |f: &dyn Fn(usize, usize) -> u32, flip: bool| {
@@ -119,7 +153,9 @@ pub fn cloth(n: usize, moments: usize) -> Motion {
     builder.pin((n - 1) * n).expect("allowed");
     let at = |j: usize, i: usize| (j * n + i) as u32;
     let quads = (0..n - 1).flat_map(|j| (0..n - 1).map(move |i| (j, i)));
-    let triangles = quads.flat_map(|(j, i)| [[at(j, i), at(j, i + 1), at(j + 1, i + 1)], [at(j, i), at(j + 1, i + 1), at(j + 1, i)]]);
+    let triangles = quads.flat_map(|(j, i)| {
+        [[at(j, i), at(j, i + 1), at(j + 1, i + 1)], [at(j, i), at(j + 1, i + 1), at(j + 1, i)]]
+    });
     builder.add_surface(SurfaceKind::Cloth, triangles.collect()).expect("allowed");
     let bend = |share: f32, place: Vec3| {
         let angle = 1.9 * share;
@@ -128,7 +164,19 @@ pub fn cloth(n: usize, moments: usize) -> Motion {
         let fold = 1.6 * share * libm::sinf(0.55 * place.x) * place.z / 40.0;
         let length = place.z * (1.0 + 0.08 * share * (1.0 - place.z / 40.0));
         let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
-        Vec3::new(place.x * (1.0 - 0.18 * share * place.z / 40.0), 10.0 - length * sin - sag, length * cos + fold)
+        Vec3::new(
+            place.x * (1.0 - 0.18 * share * place.z / 40.0),
+            10.0 - length * sin - sag,
+            length * cos + fold,
+        )
     };
-    motion("cloth", "A hanging cloth", builder, |params| (params.dt, params.substeps) = (0.01, 7), bend, moments, 0.07)
+    motion(
+        "cloth",
+        "A hanging cloth",
+        builder,
+        |params| (params.dt, params.substeps) = (0.01, 7),
+        bend,
+        moments,
+        0.07,
+    )
 }
