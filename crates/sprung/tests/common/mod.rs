@@ -1,0 +1,130 @@
+//! What the engine's tests share: the naive twin, the report's four scenes, random networks, and a few helpers.
+#![allow(dead_code)] // each test file uses its own part
+
+pub mod scenes;
+pub mod twin;
+
+use proptest::prelude::*;
+use sprung::{ContactLaw, DVec3, Material, Model, ModelBuilder, Params, Plane, Simulation, State, Vec3};
+
+/// Half an ulp of a float32, relative: no rounded operation is wrong by more than this share of its result.
+pub const U: f64 = 1.0 / (1 << 24) as f64;
+
+/// Position of a point with what rounding dropped, m.
+pub fn position(state: &State, point: usize) -> DVec3 {
+    state.position[point].as_dvec3() + state.position_low[point].as_dvec3()
+}
+
+/// Velocity of a point with what rounding dropped, m/s.
+pub fn velocity(state: &State, point: usize) -> DVec3 {
+    state.velocity[point].as_dvec3() + state.velocity_low[point].as_dvec3()
+}
+
+/// Takes `count` steps of the simulation's own dt.
+pub fn steps(simulation: &mut Simulation, count: u64) {
+    for _ in 0..count {
+        simulation.step(simulation.params().dt).expect("the scene is stable");
+    }
+}
+
+/// A simulation of parts that are known to fit.
+pub fn simulation((model, params, state): (Model, Params, State)) -> Simulation {
+    Simulation::new(model, params, state).expect("the parts fit")
+}
+
+/// A mass on a spring along +x, held at the origin, without gravity: at `length` m, moving at `speed` m/s.
+pub fn oscillator(
+    mass: f32,
+    material: Material,
+    rest: f32,
+    length: f32,
+    speed: f32,
+) -> (Model, Params, State) {
+    let mut builder = ModelBuilder::new();
+    builder.add_point(Vec3::ZERO, 0.0).expect("allowed");
+    builder.add_point(Vec3::X * length, mass).expect("allowed");
+    builder.set_velocity(1, Vec3::X * speed).expect("allowed");
+    builder.add_spring(0, 1, material).expect("allowed");
+    builder.set_rest_length(0, rest).expect("allowed");
+    let (model, mut params, state) = builder.build().expect("there are points");
+    params.gravity = Vec3::ZERO;
+    (model, params, state)
+}
+
+/// A random network in a random state, as plain numbers that proptest can shrink.
+#[derive(Clone, Debug)]
+pub struct Network {
+    pub points: Vec<([f32; 3], [f32; 3], f32, bool)>,
+    pub springs: Vec<(usize, usize, f32, f32, f32)>,
+    /// What rounding dropped, as a share of half an ulp: one number for each component of each position.
+    pub low: Vec<f32>,
+}
+
+/// Up to 12 points in a box of 20 m, some of them coincident and some fixed, up to 30 springs, some of them repeated.
+pub fn network() -> impl Strategy<Value = Network> {
+    let component = -10.0f32..10.0;
+    let vector = prop::array::uniform3(component);
+    let mass = prop_oneof![1 => Just(0.0f32), 6 => 0.1f32..10.0];
+    let point = (vector.clone(), vector, mass, prop::bool::weighted(0.1));
+    let points = prop::collection::vec(point, 2..12);
+    let twins = prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 0..2);
+    (points, twins).prop_flat_map(|(mut points, twins)| {
+        for (a, b) in twins {
+            let (a, b) = (a.index(points.len()), b.index(points.len()));
+            points[a].0 = points[b].0;
+        }
+        let count = points.len();
+        let spring = (0..count, 0..count, 0.0f32..1000.0, 0.0f32..20.0, 0.0f32..10.0);
+        let springs = prop::collection::vec(spring, 0..30);
+        let low = prop::collection::vec(-1.0f32..1.0, 3 * count);
+        (Just(points), springs, low).prop_map(|(points, springs, low)| {
+            let springs = springs.into_iter().filter(|(a, b, ..)| a != b).collect();
+            Network { points, springs, low }
+        })
+    })
+}
+
+impl Network {
+    /// The engine's parts. Positions carry a rounding residue, equal where points coincide.
+    pub fn build(&self) -> (Model, Params, State) {
+        let mut builder = ModelBuilder::new();
+        for (point, &(x, v, mass, pinned)) in self.points.iter().enumerate() {
+            builder.add_point(Vec3::from_array(x), mass).expect("allowed");
+            builder.set_velocity(point, Vec3::from_array(v)).expect("allowed");
+            if pinned {
+                builder.pin(point).expect("there is such a point");
+            }
+        }
+        for &(a, b, stiffness, damping, rest) in &self.springs {
+            let spring = builder.add_spring(a, b, Material { stiffness, damping }).expect("allowed");
+            builder.set_rest_length(spring, rest).expect("allowed");
+        }
+        let (model, mut params, mut state) = builder.build().expect("there are points");
+        params.dt = 0.001;
+        for point in 0..state.position.len() {
+            let x = state.position[point];
+            let first = state.position.iter().position(|&other| other == x).expect("itself at least");
+            let low = Vec3::from_slice(&self.low[3 * first..]);
+            state.position_low[point] = low * x.abs() * (0.4 * U as f32);
+        }
+        (model, params, state)
+    }
+
+    /// The same without anything fixed, without gravity: a closed system.
+    pub fn closed(&self) -> (Model, Params, State) {
+        let mut free = self.clone();
+        for (_, _, mass, pinned) in &mut free.points {
+            *mass = mass.max(0.1);
+            *pinned = false;
+        }
+        let (model, mut params, state) = free.build();
+        params.gravity = Vec3::ZERO;
+        (model, params, state)
+    }
+}
+
+/// A tilted plane through the box of the random networks.
+pub fn tilted_plane(law: ContactLaw) -> Plane {
+    let normal = Vec3::new(1.0, 2.0, -0.5).normalize();
+    Plane { point: Vec3::new(0.3, -1.0, 0.2), normal, stiffness: 300.0, damping: 8.0, law }
+}

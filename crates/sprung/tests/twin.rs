@@ -1,0 +1,177 @@
+//! The engine against the naive float64 twin: the four scenes, and one step from any state.
+
+mod common;
+
+use common::twin::{Ground, Point, Spring, Twin, norm, sub};
+use common::{U, network, scenes};
+use proptest::prelude::*;
+use sprung::{ContactLaw, Inline, Model, Params, Plane, State, Vec3, solver::SymplecticEuler};
+
+#[test]
+fn springs_are_those_of_the_double_loop_in_the_same_order() {
+    for scene in scenes::four() {
+        let simulation = scenes::engine(&scene);
+        let pairs: Vec<[u32; 2]> = scene.twin.springs.iter().map(|s| [s.i as u32, s.j as u32]).collect();
+        assert_eq!(pairs.len(), scene.springs, "{}", scene.name);
+        assert!(simulation.model().springs() == pairs, "{}: other springs, or another order", scene.name);
+        // A rest length is the distance of two rounded positions: each is off by at most half an ulp in x, y and z,
+        // and the length is rounded three times.
+        for (spring, &rest) in scene.twin.springs.iter().zip(simulation.model().spring_rest_length()) {
+            let farthest = norm(scene.twin.points[spring.i].x).max(norm(scene.twin.points[spring.j].x));
+            assert!((f64::from(rest) - spring.rest).abs() <= U * (2.0 * farthest + 3.0 * spring.rest));
+        }
+    }
+}
+
+#[test]
+fn the_four_scenes_stay_within_a_tenth_of_a_millimetre_for_200_steps() {
+    for mut scene in scenes::four() {
+        let mut simulation = scenes::engine(&scene);
+        for step in 1..=200 {
+            simulation.step(scene.dt).expect("the scene is stable");
+            scene.twin.step(scene.dt);
+            let furthest = furthest_apart(&scene.twin, simulation.state());
+            assert!(furthest < 1e-4, "{}: {furthest:e} m apart after step {step}", scene.name);
+        }
+        // It has moved, so the comparison meant something.
+        let moved = furthest_apart(
+            &scenes::four().into_iter().find(|s| s.name == scene.name).expect("it").twin,
+            simulation.state(),
+        );
+        assert!(moved > 1.0, "{}", scene.name);
+    }
+}
+
+fn furthest_apart(twin: &Twin, state: &State) -> f64 {
+    let apart = |(point, x): (&Point, &Vec3)| norm(sub(point.x, x.as_dvec3().to_array()));
+    twin.points.iter().zip(&state.position).map(apart).fold(0.0, f64::max)
+}
+
+#[test]
+fn reset_is_bit_for_bit() {
+    for scene in scenes::four() {
+        let mut simulation = scenes::engine(&scene);
+        let (state, params) = (simulation.state().clone(), simulation.params().clone());
+        common::steps(&mut simulation, 50);
+        simulation.change(sprung::Change::Gravity(Vec3::ZERO)).expect("allowed");
+        simulation.change(sprung::Change::Dt(0.003)).expect("allowed");
+        common::steps(&mut simulation, 5);
+        assert_ne!(simulation.state_hash(), state.hash(), "{}", scene.name);
+        simulation.reset();
+        assert_eq!((simulation.state(), simulation.params()), (&state, &params), "{}", scene.name);
+        // And from there the same run again, as from a fresh start.
+        common::steps(&mut simulation, 20);
+        let mut fresh = scenes::engine(&scene);
+        common::steps(&mut fresh, 20);
+        assert_eq!(simulation.state(), fresh.state(), "{}", scene.name);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn one_step_from_any_state_agrees_within_rounding(network in network(), grounded in any::<bool>()) {
+        let (model, mut params, state) = network.build();
+        if grounded {
+            params.planes.push(Plane { law: ContactLaw::Report, ..Plane::level(-2.0, 50.0, 10.0) });
+        }
+        let mut twin = twin_of(&model, &params, &state);
+        let tolerances = rounding_of_one_step(&twin, &params);
+        let mut after = state.clone();
+        SymplecticEuler::new(&model, &params).step(&params, &mut after, &Inline);
+        twin.step(params.dt);
+        for (point, [allowed_x, allowed_v]) in tolerances.into_iter().enumerate() {
+            let off_v = norm(sub(twin.points[point].v, common::velocity(&after, point).to_array()));
+            let off_x = norm(sub(twin.points[point].x, common::position(&after, point).to_array()));
+            prop_assert!(off_v <= allowed_v, "point {}: v off by {:e}, allowed {:e}", point, off_v, allowed_v);
+            prop_assert!(off_x <= allowed_x, "point {}: x off by {:e}, allowed {:e}", point, off_x, allowed_x);
+        }
+    }
+}
+
+/// The same scene in the same state, for the twin.
+fn twin_of(model: &Model, params: &Params, state: &State) -> Twin {
+    let point = |at: usize| Point {
+        m: if params.is_fixed(at) { 0.0 } else { f64::from(params.point_mass[at]) },
+        x: common::position(state, at).to_array(),
+        v: if params.is_fixed(at) { [0.0; 3] } else { common::velocity(state, at).to_array() },
+        f: [0.0; 3],
+    };
+    let spring = |(at, &[i, j]): (usize, &[u32; 2])| Spring {
+        i: i as usize,
+        j: j as usize,
+        ks: f64::from(params.spring_stiffness[at]),
+        kd: f64::from(params.spring_damping[at]),
+        rest: f64::from(params.spring_rest_length[at]),
+    };
+    let ground = params.planes.first().map(|plane| Ground {
+        y: f64::from(plane.point.y),
+        kc: f64::from(plane.stiffness),
+        kcd: f64::from(plane.damping),
+    });
+    Twin {
+        points: (0..model.point_count()).map(point).collect(),
+        springs: model.springs().iter().enumerate().map(spring).collect(),
+        ground,
+        g: -f64::from(params.gravity.y),
+    }
+}
+
+/// How far position (m) and velocity (m/s) of each point may be off after one step: the rounding, operation by
+/// operation, with u = 2⁻²⁴.
+///
+/// A spring of length ℓ between points no further than r from the origin:
+/// - its axis e is that of the *rounded* positions, off by δ = 2u·r (half an ulp at each end), and by u·ℓ more;
+/// - ℓ is a sum of squares and a root: 3u·ℓ besides δ. So the stretch is off by δ + 5u·ℓ + u|ℓ − L|;
+/// - u = e·(1/ℓ) turns by 2δ/ℓ and is rounded thrice more: 2δ/ℓ + 6u;
+/// - relative speed w·u: 2δ/ℓ + 10u of |w|;
+/// - both enter the tension T, which is then multiplied by u: T·(2δ/ℓ + 8u) more.
+///
+/// The n forces on a point are added up: n·u·ΣF. Divided by m and multiplied by dt: 4u of the result, 1e-20 where a speed
+/// counts as zero. x moves by dt times the *rounded* velocity, u·v, and is rounded twice: dt·(δv + 3u·v).
+fn rounding_of_one_step(twin: &Twin, params: &Params) -> Vec<[f64; 2]> {
+    let mut allowed = vec![0.0; twin.points.len()]; // of the force on each point, N
+    let mut total = vec![0.0; twin.points.len()];
+    let mut count = vec![4.0; twin.points.len()]; // gravity, plane and their products
+    for spring in &twin.springs {
+        let (a, b) = (&twin.points[spring.i], &twin.points[spring.j]);
+        let length = norm(sub(a.x, b.x));
+        if length == 0.0 {
+            continue;
+        }
+        let speed = norm(sub(a.v, b.v));
+        let delta = 2.0 * U * norm(a.x).max(norm(b.x));
+        let turn = 2.0 * delta / length;
+        let stretch = (length - spring.rest).abs();
+        let tension = spring.ks * stretch + spring.kd * speed;
+        let off = spring.ks * (delta + 5.0 * U * length + U * stretch)
+            + spring.kd * speed * (turn + 10.0 * U)
+            + tension * (turn + 8.0 * U);
+        for point in [spring.i, spring.j] {
+            allowed[point] += off;
+            total[point] += tension;
+            count[point] += 1.0;
+        }
+    }
+    let dt = params.dt;
+    let of_point = |(at, p): (usize, &Point)| {
+        let mut force = total[at] + p.m * twin.g;
+        let mut off = allowed[at];
+        if let Some(ground) = &twin.ground {
+            let depth = ground.y - p.x[1];
+            let edge = 2.0 * U * (p.x[1].abs() + ground.y.abs());
+            // At the very edge one may touch and the other not yet: then the damper's force is the difference.
+            let jump = if depth.abs() <= edge { ground.kcd * p.v[1].abs() } else { 0.0 };
+            force += ground.kc * depth.max(0.0) + ground.kcd * p.v[1].abs();
+            off += ground.kc * edge + jump;
+        }
+        if p.m == 0.0 {
+            return [0.0, 0.0];
+        }
+        let dv = (off + (count[at] + 4.0) * U * force) * dt / p.m + 1e-20;
+        let speed = norm(p.v) + force * dt / p.m;
+        [dt * (dv + 3.0 * U * speed), dv]
+    };
+    twin.points.iter().enumerate().map(of_point).collect()
+}
