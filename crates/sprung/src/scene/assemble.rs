@@ -28,15 +28,6 @@ impl Scene {
         self.build_within(MAX_POINTS, self.spring_limit())
     }
 
-    /// A simulation of this scene, ready to step.
-    ///
-    /// # Errors
-    /// As [`build`](Self::build).
-    pub fn simulation(&self) -> Result<Simulation> {
-        let (model, params, state) = self.build()?;
-        Simulation::new(model, params, state)
-    }
-
     /// As [`build`](Self::build), but with at most so many points and springs, whatever the scene allows: for a caller
     /// who wants a bound on work and memory.
     ///
