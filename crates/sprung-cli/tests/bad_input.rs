@@ -1,0 +1,129 @@
+//! Bad input of every kind: one sentence with the place, exit status 2, and nothing written.
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// Runs, expects status 2 and one line (and a pointer to the help where the arguments were at fault), and gives it.
+fn complaint(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_sprung")).current_dir(folder).args(arguments).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+    assert!(output.stdout.is_empty(), "{arguments:?} printed to standard output");
+    let line = said.strip_suffix("Try `sprung --help`.\n").unwrap_or(&said).trim_end().to_owned();
+    assert!(!line.contains('\n'), "{arguments:?} said more than one line: {said}");
+    assert!(line.starts_with("sprung: "), "{line}");
+    line["sprung: ".len()..].to_owned()
+}
+
+const BODY: &str = "[[body]]\nname = \"a\"\npoints = [[0, 0, 0], [1, 0, 0]]\npoint_mass = 1\n";
+
+#[test]
+fn bad_scene_files() {
+    let folder = TempDir::new().unwrap();
+    let scene = |text: &str| {
+        std::fs::write(folder.path().join("bad.toml"), text).unwrap();
+        complaint(folder.path(), &["run", "bad.toml", "-o", "out.csv"])
+    };
+    let cases: &[(&str, &[&str])] = &[
+        ("", &["bad.toml", "empty"]),
+        ("dt = \n", &["bad.toml:1:"]),
+        (&format!("dt = nan\n{BODY}"), &["bad.toml:1:6: dt:", "NaN"]),
+        (&format!("dt = inf\n{BODY}"), &["bad.toml:1:6: dt:"]),
+        (&format!("dt = -1\n{BODY}"), &["bad.toml:1:6: dt:", "-1"]),
+        (&format!("dt = \"soon\"\n{BODY}"), &["bad.toml:1:6: dt:", "auto"]),
+        (&format!("substep = 3\n{BODY}"), &["bad.toml:1:1:", "substep", "did you mean \"substeps\"?"]),
+        (&format!("{BODY}pins = [0, 0]\n"), &["bad.toml:5:", "pins"]),
+        (&format!("{BODY}pins = [7]\n"), &["bad.toml:5:", "pins", "7"]),
+        ("[[body]]\nname = \"a\"\npoints = [[0, 0, 0]]\npoint_mass = -1\n", &["bad.toml:4:14:", "point_mass", "-1"]),
+        (&format!("{BODY}[[body.springs]]\nradius = 1\nstiffness = -5\ndamping = 0\n"), &["bad.toml:7:", "stiffness", "-5"]),
+        (&format!("{BODY}[[body.springs]]\nradius = 1\n"), &["bad.toml:5:", "stiffness"]),
+    ];
+    for (text, parts) in cases {
+        let line = scene(text);
+        for part in *parts {
+            assert!(line.contains(part), "{part:?} is not in: {line}");
+        }
+    }
+    assert!(!folder.path().join("out.csv").exists() && !folder.path().join("out.csv.partial").exists());
+}
+
+#[test]
+fn scenes_that_would_be_too_large() {
+    let folder = TempDir::new().unwrap();
+    // 50,000 points within reach of each other: 1.25 thousand million springs.
+    let text = "[[body]]\nname = \"a\"\nlattice = { points = [50, 50, 20], spacing = 0.001 }\npoint_mass = 1\n\
+                [[body.springs]]\nradius = 9\nstiffness = 1\n";
+    std::fs::write(folder.path().join("dense.toml"), text).unwrap();
+    let line = complaint(folder.path(), &["show", "dense.toml"]);
+    assert!(line.starts_with("dense.toml:6:") && line.contains("20,000,000") && line.contains("max_springs"), "{line}");
+    let text = "[[body]]\nname = \"a\"\nlattice = { points = [4000000000, 4000000000, 4000000000], spacing = 1 }\npoint_mass = 1\n";
+    std::fs::write(folder.path().join("huge.toml"), text).unwrap();
+    let line = complaint(folder.path(), &["show", "huge.toml"]);
+    assert!(line.starts_with("huge.toml:3:"), "{line}");
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let folder = TempDir::new().unwrap();
+    assert_eq!(complaint(folder.path(), &["run", "none.toml"]), "none.toml: there is no such file");
+    std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
+    assert_eq!(complaint(folder.path(), &["run", "folder.toml"]), "folder.toml: is a folder, and must be a file");
+    std::fs::write(folder.path().join("binary.toml"), b"dt = 1\nname = \"\xff\"\n").unwrap();
+    let line = complaint(folder.path(), &["run", "binary.toml"]);
+    assert!(line.starts_with("binary.toml:2:9:") && line.contains("UTF-8"), "{line}");
+    // Two thousand million bytes without taking them from the disk.
+    let large = std::fs::File::create(folder.path().join("large.toml")).unwrap();
+    large.set_len(2_000_000_000).unwrap();
+    assert_eq!(complaint(folder.path(), &["run", "large.toml"]), "large.toml: is larger than the 64 MiB allowed");
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let folder = TempDir::new().unwrap();
+    let run = |output: &str| complaint(folder.path(), &["run", "spring", "-o", output, "--frames", "2"]);
+    assert_eq!(run("none/out.csv"), "none/out.csv: cannot be written: its folder does not exist");
+    std::fs::create_dir(folder.path().join("folder.csv")).unwrap();
+    assert!(run("folder.csv").starts_with("folder.csv: cannot be written: it is a folder"));
+    let line = run("out.xyz");
+    assert!(line.starts_with("out.xyz:") && line.contains("csv") && line.contains("gif"), "{line}");
+    assert!(run("out").starts_with("out:"));
+    let line = complaint(folder.path(), &["run", "spring", "-o", "a.csv", "-o", "a.csv"]);
+    assert!(line.starts_with("a.csv:"), "the same output twice: {line}");
+    let line = complaint(folder.path(), &["run", "spring", "-o", "a.csv", "--plot", "b.txt"]);
+    assert!(line.starts_with("b.txt:") && line.contains("svg"), "{line}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left but the folder");
+}
+
+#[test]
+fn bad_arguments() {
+    let folder = TempDir::new().unwrap();
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["run", "jely"], &["jely", "did you mean \"jelly\"?"]),
+        (&["run", "jelly", "--set", "dt"], &["--set dt", "dt=0.005"]),
+        (&["run", "jelly", "--set", "dtt=1"], &["--set dtt=1", "did you mean \"dt\"?"]),
+        (&["run", "jelly", "--set", "dt=fast"], &["--set dt=fast"]),
+        (&["run", "jelly", "--set", "dt=nan"], &["--set dt=nan", "NaN"]),
+        (&["run", "jelly", "--set", "gravity=[0, 1]"], &["--set gravity=[0, 1]"]),
+        (&["run", "jelly", "--frames", "-1"], &["--frames"]),
+        (&["run", "jelly", "--frames", "many"], &["--frames"]),
+        (&["run", "jelly", "--seconds", "0"], &["--seconds", "1e-6"]),
+        (&["run", "jelly", "--seconds", "NaN"], &["--seconds", "finite"]),
+        (&["run", "jelly", "--seconds", "1e9", "--fps", "1e6"], &["--seconds", "frames"]),
+        (&["run", "jelly", "--frames", "3", "--seconds", "1"], &["--frames", "--seconds"]),
+        (&["run", "jelly", "--threads", "0"], &["--threads"]),
+        (&["run", "jelly", "--size", "10"], &["--size", "1280x720"]),
+        (&["run", "jelly", "--frobnicate"], &["--frobnicate"]),
+        (&["runn", "jelly"], &["runn", "'run'"]),
+        (&["run"], &["SCENE"]),
+    ];
+    for (arguments, parts) in cases {
+        let line = complaint(folder.path(), arguments);
+        for part in *parts {
+            assert!(line.to_lowercase().contains(&part.to_lowercase()), "{arguments:?}: {part:?} is not in: {line}");
+        }
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
