@@ -49,7 +49,10 @@ impl Scene {
         }
         if text.trim().is_empty() {
             let error = Error::new(Code::MissingField, "is empty; a scene needs at least one [[body]]");
-            return Err(error.with_fix("`sprung new FILE` writes a scene to start from").in_file(file));
+            return Err(error
+                .with_fix("`sprung new FILE` writes a scene to start from")
+                .in_file(file)
+                .at_line(1, 1));
         }
         let origin = Origin::new(file, text);
         let document = DeTable::parse(text).map_err(|error| origin.locate_syntax(&error))?;

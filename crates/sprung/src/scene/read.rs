@@ -247,7 +247,7 @@ impl<'de> Deserializer<'de> for ValueReader<'_> {
     ) -> Result<V::Value, ReadError> {
         let word = match self.0.get_ref() {
             DeValue::String(text) => visitor.visit_enum(IntoDeserializer::into_deserializer(text.as_ref())),
-            _ => self.read(WordVisitor(variants)).and_then(|never| match never {}),
+            _ => self.read(WordVisitor(variants)).map(|never| match never {}),
         };
         word.map_err(|error| error.at(self.0.span()))
     }

@@ -56,10 +56,8 @@ impl Origin {
             return error.in_file(&change.argument);
         }
         let error = error.in_file(&source.file);
-        match span_of(&source.text, &field) {
-            Some(span) => at_byte(error, &source.text, span.start),
-            None => error,
-        }
+        // What is missing from the whole file is missing from its beginning.
+        at_byte(error, &source.text, span_of(&source.text, &field).map_or(0, |span| span.start))
     }
 
     /// The error of a document that could not be read as a scene.

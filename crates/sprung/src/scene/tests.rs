@@ -158,10 +158,10 @@ fn values_are_set_one_by_one_or_all_at_once() {
     assert!(scene.bodies.iter().flat_map(|body| &body.springs).all(|springs| springs.stiffness == 1234.0));
     assert_eq!((scene.joints[0].stiffness, scene.joints[1].stiffness), (5.0, 1234.0));
     let deck = &scene.bodies[2];
-    assert_eq!((deck.springs[0].damping, deck.springs[1].damping), (5.0, 7.0));
+    assert_eq!((deck.springs[0].damping, deck.springs[1].damping), (12.0, 7.0));
     assert_eq!(deck.pins, [Pin::Side("left".to_owned())]);
     assert_eq!(scene.bodies[3].springs[0].rest_scale, 1.5);
-    assert_eq!(scene.bodies[4].springs[0].rest_scale, 1.02);
+    assert_eq!(scene.bodies[4].springs[0].rest_scale, 1.01);
 }
 
 #[test]
