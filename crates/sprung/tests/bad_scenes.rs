@@ -1143,6 +1143,18 @@ chain = { points = 3, step = [1, 0 0] }
 "#,
         "my.toml:3:34: chain: has `0 0` where a value must be; text needs quotes, lists need commas",
     ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [100, 0, 0] }
+[[body.springs]]
+radius = 100
+stiffness = 1
+rest_scale = 1e8
+"#,
+        "my.toml:7:14: body[0].springs[0].rest_scale: makes a spring 1e10 m long at rest, and it may be at most 1e9 m",
+    ),
 ];
 
 /// (code, key, value, message): changes that are refused, to the scene of the jelly.

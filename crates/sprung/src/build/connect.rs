@@ -207,9 +207,9 @@ mod tests {
             let points = |list: &[[i32; 3]]| list.iter().map(|p| Vec3::from_array(p.map(|c| c as f32))).collect::<Vec<_>>();
             let (a, b) = (points(&a), points(&b));
             let mut double_loop = Vec::new();
-            for i in 0..a.len() {
-                for j in 0..b.len() {
-                    if a[i].distance_squared(b[j]) <= (radius * radius) as f32 {
+            for (i, p) in a.iter().enumerate() {
+                for (j, q) in b.iter().enumerate() {
+                    if p.distance_squared(*q) <= (radius * radius) as f32 {
                         double_loop.push([i as u32, j as u32]);
                     }
                 }

@@ -57,7 +57,13 @@ struct Assembly<'a> {
     /// The points of each body, as it is finished.
     bodies: Vec<Range<usize>>,
     /// Springs whose rest length is a multiple of the one they are built with.
-    rest_scales: Vec<(Range<usize>, f32)>,
+    rest_scales: Vec<RestScale>,
+}
+
+struct RestScale {
+    springs: Range<usize>,
+    scale: f32,
+    path: String,
 }
 
 impl<'a> Assembly<'a> {
@@ -83,9 +89,14 @@ impl<'a> Assembly<'a> {
         params.gravity = vec3(self.scene.gravity);
         params.planes = self.scene.planes.iter().map(plane).collect();
         let rest_length = Arc::make_mut(&mut params.spring_rest_length);
-        for (springs, scale) in self.rest_scales {
+        for RestScale { springs, scale, path } in self.rest_scales {
             for length in &mut rest_length[springs] {
-                *length = (*length * scale).min(*LENGTH_RANGE.end());
+                *length *= scale;
+                if !LENGTH_RANGE.contains(length) {
+                    let sentence =
+                        format!("makes a spring {length:e} m long at rest, and it may be at most 1e9 m");
+                    return Err(Error::new(Code::OutOfRange, sentence).at_field(format!("{path}.rest_scale")));
+                }
             }
         }
         params.dt = match self.scene.dt {
@@ -208,7 +219,7 @@ impl<'a> Assembly<'a> {
         if let Some(pairs) = &springs.pairs {
             self.add_pairs(path, pairs, [points.start, points.start], springs.rest_length, material)?;
         }
-        self.rest_scales.push((first..self.builder.spring_count(), springs.rest_scale as f32));
+        self.scale_rest_lengths(first, springs.rest_scale, path);
         Ok(())
     }
 
@@ -232,7 +243,7 @@ impl<'a> Assembly<'a> {
         if let Some(pairs) = &joint.pairs {
             self.add_pairs(path, pairs, [a.start, b.start], joint.rest_length, material)?;
         }
-        self.rest_scales.push((first..self.builder.spring_count(), joint.rest_scale as f32));
+        self.scale_rest_lengths(first, joint.rest_scale, path);
         Ok(())
     }
 
@@ -255,6 +266,12 @@ impl<'a> Assembly<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Notes the scale of all springs made since `first`.
+    fn scale_rest_lengths(&mut self, first: usize, scale: f64, path: &str) {
+        let springs = first..self.builder.spring_count();
+        self.rest_scales.push(RestScale { springs, scale: scale as f32, path: path.to_owned() });
     }
 
     fn explained(&self, error: Error, field: String) -> Error {
