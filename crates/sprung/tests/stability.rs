@@ -1,5 +1,5 @@
 //! The three limits on dt against the table of the four scenes, dense eigenvalue solves, and the step itself.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use proptest::prelude::*;
@@ -86,7 +86,6 @@ fn the_table_of_the_four_scenes() {
 
         let safe = certified(&model, &params, &state.position).unwrap().dt;
         let ever = every_configuration(&model, &params).unwrap().dt;
-        println!("{name}: {found:?} certified {safe} every {ever} auto {}", auto_dt(&model, &params));
         assert!(
             ever <= safe && safe <= limit * (1.0 + 1e-9) && safe >= 0.52 * limit,
             "{name}: {ever} {safe} {limit}"
@@ -108,7 +107,7 @@ impl Dense {
     fn new(model: &Model, params: &Params, positions: &[Vec3], projected: bool) -> Self {
         let n = model.point_count();
         let (mut k, mut c) = (DMatrix::zeros(3 * n, 3 * n), DMatrix::zeros(3 * n, 3 * n));
-        let mut add = |matrix: &mut DMatrix<f64>, i: usize, j: Option<usize>, block: Matrix3<f64>| {
+        let add = |matrix: &mut DMatrix<f64>, i: usize, j: Option<usize>, block: Matrix3<f64>| {
             let mut at = |a: usize, b: usize, sign: f64| {
                 let mut view = matrix.fixed_view_mut::<3, 3>(3 * a, 3 * b);
                 view += block * sign;
@@ -184,35 +183,41 @@ impl Dense {
     /// By bisection, the smallest dt of demand 4. The demand of a projected K only grows with dt; of the true one it
     /// may fall again where the network is compressed, so the bisection starts from the first crossing of a fine grid.
     fn limit(&self) -> Option<f64> {
-        let bound = largest(self.k.clone()).max(0.0) + largest(self.c.clone());
-        if bound <= 0.0 {
+        if largest(self.k.clone()).max(0.0) + largest(self.c.clone()) <= 0.0 {
             return None;
         }
-        let (mut low, mut high) = (1e-12, 1e-12);
+        // The Frobenius norms bound the eigenvalues, so nothing lies below this.
+        let (k, c) = (self.k.norm(), self.c.norm());
+        let mut low = 4.0 / (c + (c * c + 4.0 * k).sqrt());
+        let mut high = low;
         while self.demand(high) < 4.0 {
             low = high;
-            high *= 1.3;
-            if high > 1e12 {
+            high *= 1.1;
+            if high > 1e9 {
                 return None;
             }
         }
-        while high - low > 1e-13 * high {
+        while high - low > 1e-12 * high {
             let middle = 0.5 * (low + high);
-            if self.demand(middle) < 4.0 {
-                low = middle
-            } else {
-                high = middle
-            }
-            if middle == low && middle == high {
-                break;
-            }
+            if self.demand(middle) < 4.0 { low = middle } else { high = middle }
         }
         Some(high)
     }
 }
 
+/// The largest eigenvalue. The library's solve gives NaN for some matrices of many zeros, so the matrix is scaled to 1
+/// and mirrored at a plane that is askew to every axis: H A H with H = I − 2u uᵀ has the same eigenvalues and no zeros.
 fn largest(matrix: DMatrix<f64>) -> f64 {
-    SymmetricEigen::new(matrix).eigenvalues.max()
+    let (n, scale) = (matrix.nrows(), matrix.amax());
+    if scale == 0.0 {
+        return 0.0;
+    }
+    let u = DVector::from_fn(n, |i, _| 1.0 + (i as f64 * 0.618).fract()).normalize();
+    let mirror = DMatrix::identity(n, n) - &u * u.transpose() * 2.0;
+    let mirrored = &mirror * (matrix / scale) * &mirror;
+    let largest = SymmetricEigen::new((&mirrored + mirrored.transpose()) * 0.5).eigenvalues.max();
+    assert!(largest.is_finite());
+    largest * scale
 }
 
 /// A network of anything that may occur.
@@ -290,7 +295,8 @@ fn network(most_points: usize) -> impl Strategy<Value = (Model, Params, Vec<Vec3
     })
 }
 
-/// For springs without damping at a mode of demand 4 the dense limit is off by a few roundings of the matrix's norm.
+/// The dense solve is off by some roundings of the matrix's norm, n·2⁻⁵³ of it, which negative eigenvalues of compressed
+/// springs make a few powers of ten larger than the largest eigenvalue.
 const DENSE_ERROR: f64 = 1e-9;
 
 proptest! {
@@ -481,6 +487,23 @@ fn two_bodies_apart_have_each_their_own_largest() {
     assert!((found.dt.unwrap() / exact - 1.0).abs() < 1e-6, "{found:?}");
 }
 
+/// One spring of another material: the three problems are no longer one, and their answers are nearly the table's.
+#[test]
+fn a_jelly_of_two_materials_is_close_to_one_of_a_single_material() {
+    let (model, mut params, state) = jelly();
+    let uniform = sharp(&model, &params, &state.position);
+    params.apply(&model, &Change::Damping(0..1, 10.01)).unwrap(); // a corner, where the top mode is still
+    let found = sharp(&model, &params, &state.position);
+    assert!(found.iterations > uniform.iterations);
+    for (found, uniform) in [
+        (found.dt.unwrap(), uniform.dt.unwrap()),
+        (found.omega2_max, uniform.omega2_max),
+        (found.c_max, uniform.c_max),
+    ] {
+        assert!((found / uniform - 1.0).abs() < 1e-4, "{found} {uniform}");
+    }
+}
+
 // ---------------------------------------------------------------- the step itself
 
 /// Just below the limit every mode of a small lattice stays bounded, just above it the top mode grows.
@@ -500,7 +523,7 @@ fn the_linear_step_is_stable_below_the_limit_and_grows_above_it() {
         for _ in 0..20_000 {
             v -= (&k * &x + &c * &v) * dt;
             x += &v * dt;
-            if !(x.norm() < 1e100) {
+            if x.norm() > 1e100 {
                 break;
             }
         }
@@ -515,7 +538,7 @@ fn the_linear_step_is_stable_below_the_limit_and_grows_above_it() {
 
 #[test]
 #[ignore = "a measurement: cargo test --release -p sprung --test stability -- --ignored --nocapture"]
-fn a_large_lattice_takes_about_a_second() {
+fn a_large_lattice_is_quick() {
     let clock = std::time::Instant::now();
     let (model, mut params, state) = lattice(64).build().unwrap();
     println!("built {} springs in {:.2?}", model.spring_count(), clock.elapsed());

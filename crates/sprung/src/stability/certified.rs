@@ -116,7 +116,7 @@ pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<L
 /// let b = builder.add_point(Vec3::X, 1.0)?;
 /// builder.add_spring(a, b, Material { stiffness: 50.0, damping: 0.0 })?;
 /// let (model, mut params, _) = builder.build()?;
-/// let limit = |params| stability::every_configuration(&model, params).expect("it has a live spring").dt;
+/// let limit = |params: &_| stability::every_configuration(&model, params).expect("it has a live spring").dt;
 /// assert!((limit(&params) - 0.2).abs() < 1e-9); // 2/√(50 + 50)
 /// params.planes.push(Plane::level(0.0, 300.0, 0.0));
 /// assert!((limit(&params) - 0.1).abs() < 1e-9); // 2/√(50 + 50 + 300)

@@ -38,17 +38,15 @@ impl Symmetric3 {
 
     /// The eigenvector of unit length that belongs to the largest eigenvalue.
     pub fn top_eigenvector(mut self) -> [f64; 3] {
-        let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]; // one per row
+        let mut vectors = [DVec3::X, DVec3::Y, DVec3::Z];
         self.diagonalise(|p, q, cos, sin| {
-            for axis in 0..3 {
-                let (at_p, at_q) = (vectors[p][axis], vectors[q][axis]);
-                vectors[p][axis] = cos * at_p - sin * at_q;
-                vectors[q][axis] = sin * at_p + cos * at_q;
-            }
+            let (at_p, at_q) = (vectors[p], vectors[q]);
+            vectors[p] = at_p * cos - at_q * sin;
+            vectors[q] = at_p * sin + at_q * cos;
         });
         let values = [self.m[0][0], self.m[1][1], self.m[2][2]];
         let first_two = if values[0] >= values[1] { 0 } else { 1 };
-        vectors[if values[first_two] >= values[2] { first_two } else { 2 }]
+        vectors[if values[first_two] >= values[2] { first_two } else { 2 }].to_array()
     }
 
     /// Cyclic Jacobi: each rotation makes one off-diagonal entry zero and the sum of squares beside the diagonal smaller.

@@ -219,7 +219,8 @@ impl Gram {
                 };
             }
         }
-        let lowest = -(0..basis.len()).map(|i| reduced.m[i].iter().map(|entry| entry.abs()).sum::<f64>()).sum::<f64>();
+        let lowest =
+            -(0..basis.len()).map(|i| reduced.m[i].iter().map(|entry| entry.abs()).sum::<f64>()).sum::<f64>();
         for absent in basis.len()..3 {
             reduced.m[absent][absent] = 2.0 * lowest - 1.0;
         }
