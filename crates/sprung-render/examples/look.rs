@@ -7,6 +7,7 @@ mod scenes;
 use std::path::Path;
 use std::time::Instant;
 
+use sprung::energy::{Energy, LedgerSums};
 use sprung_io::{Frame, Options};
 use sprung_render::export::exporter_for;
 
@@ -56,5 +57,37 @@ fn main() -> sprung::Result<()> {
             begin.elapsed().as_secs_f64()
         );
     }
+    for name in ["energy.svg", "energy.png"] {
+        sprung_render::plot::energy(
+            &Path::new(&folder).join(name),
+            "Energy of a mass on a spring",
+            &energies(),
+        )?;
+    }
     Ok(())
+}
+
+/// A damped oscillation, and where its energy goes.
+fn energies() -> Vec<(f64, Energy)> {
+    let sample = |index: u32| {
+        let time = f64::from(index) * 0.02;
+        let left = 4200.0 * libm::exp(-0.35 * time);
+        let (sin, cos) = libm::sincos(4.0 * time);
+        let sums = LedgerSums {
+            lost_in_dampers: 4150.0 - 0.99 * left,
+            integrator_error: -0.01 * (4200.0 - left),
+            ..LedgerSums::default()
+        };
+        (
+            time,
+            Energy {
+                kinetic: left * sin * sin,
+                elastic: 0.6 * left * cos * cos,
+                gravitational: 0.4 * left * cos * cos,
+                contact: 0.0,
+                sums,
+            },
+        )
+    };
+    (0..400).map(sample).collect()
 }

@@ -70,7 +70,9 @@ impl SceneView {
         let depths = bounds.corners().map(|corner| camera.view(corner).z);
         let (begin, end) =
             depths.iter().fold((f32::MAX, f32::MIN), |(b, e), &depth| (b.min(depth), e.max(depth)));
-        let haze = Haze { colour: srgb(0xe4_ea_f0), begin, end: end.max(begin + 1e-6), strength: 0.26 };
+        // Shallow scenes need no haze to be read.
+        let strength = 0.26 * ((end - begin) / begin.max(1e-6) * 2.0).clamp(0.0, 1.0);
+        let haze = Haze { colour: srgb(0xe4_ea_f0), begin, end: end.max(begin + 1e-6), strength };
         let studio = Studio::new(&camera, (-params.gravity).normalize_or(Vec3::Y));
         Self {
             model: Arc::clone(model),

@@ -1,0 +1,135 @@
+//! The energy plot: where the energy is and where it went, as an `.svg` or a `.png`.
+
+mod chart;
+mod sheet;
+
+use std::io::Write;
+use std::path::Path;
+
+use sprung::energy::Energy;
+use sprung::{Code, Error, Result};
+use sprung_io::files::write_error;
+use sprung_io::{PartialFile, Written};
+
+use crate::export::write_png;
+use chart::{Chart, Curve};
+
+/// Size of the plot: pixels of a `.png` at half its scale, user units of an `.svg`.
+const SIZE: [u32; 2] = [960, 540];
+
+/// Checks, before a run is begun for it, that a plot of this name can be written: its ending and its folder.
+///
+/// # Errors
+/// [`Code::Unsupported`] for another ending than `.svg` or `.png`, [`Code::Unwritable`] for a folder that is not there.
+pub fn check(path: &Path) -> Result<()> {
+    ending(path)?;
+    // Begun and dropped at once, it leaves nothing behind.
+    PartialFile::create(path).map(drop)
+}
+
+/// Draws the energies of a run: (time in s, energy in J) for each sample.
+///
+/// # Errors
+/// Those of [`check`], and [`Code::Unwritable`] if the disk is full.
+pub fn energy(path: &Path, title: &str, samples: &[(f64, Energy)]) -> Result<Written> {
+    let vector = ending(path)? == "svg";
+    let sheet = Chart { title: title.to_owned(), curves: curves(samples) }.draw(SIZE);
+    let mut file = PartialFile::create(path)?;
+    let written =
+        if vector { file.write_all(sheet.svg().as_bytes()) } else { write_png(&mut file, &sheet.image(2)) };
+    written.map_err(|error| write_error(path, &error))?;
+    let bytes = file.finish()?;
+    Ok(Written { path: path.to_owned(), bytes, frames: samples.len() as u64 })
+}
+
+fn ending(path: &Path) -> Result<String> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if ending == "svg" || ending == "png" {
+        return Ok(ending);
+    }
+    let found = if ending.is_empty() { "no ending".to_owned() } else { format!("the ending .{ending}") };
+    let error = Error::new(Code::Unsupported, format!("has {found}, and a plot is written as .svg or .png"));
+    Err(error.in_file(path.display().to_string()))
+}
+
+/// The ledger's entries as curves. Potential energy has no natural zero: gravity's counts from the start.
+fn curves(samples: &[(f64, Energy)]) -> Vec<Curve> {
+    let start = samples.first().map_or(0.0, |(_, energy)| energy.gravitational);
+    let curve = |name, colour, width, dash: &'static [f32], value: &dyn Fn(&Energy) -> f64| Curve {
+        name,
+        colour,
+        width,
+        dash,
+        points: samples.iter().map(|(time, energy)| (*time, value(energy))).collect(),
+    };
+    // Okabe and Ito's colours; solid is where energy is, dashed is where it went.
+    vec![
+        curve("total", 0x22_2b_36, 2.6, &[], &|energy| energy.total() - start),
+        curve("kinetic", 0x00_72_b2, 1.8, &[], &|energy| energy.kinetic),
+        curve("gravitational*", 0x00_9e_73, 1.8, &[], &|energy| energy.gravitational - start),
+        curve("elastic", 0xe6_9f_00, 1.8, &[], &|energy| energy.elastic),
+        curve("contact", 0xcc_79_a7, 1.8, &[], &|energy| energy.contact),
+        curve("lost in dampers", 0xd5_5e_00, 1.8, &[7.0, 4.0], &|energy| energy.sums.lost_in_dampers),
+        curve("lost in contact", 0x8c_4a_8f, 1.8, &[7.0, 4.0], &|energy| energy.sums.lost_in_contact),
+        curve("work put in", 0x3a_9b_d9, 1.8, &[7.0, 4.0], &|energy| energy.sums.work_in),
+        curve("integrator error", 0x77_7f_88, 1.8, &[2.0, 3.0], &|energy| energy.sums.integrator_error),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use sprung::energy::LedgerSums;
+
+    use super::*;
+
+    fn samples() -> Vec<(f64, Energy)> {
+        let sample = |index: u32| {
+            let time = f64::from(index) * 0.05;
+            let fall = 1000.0 * libm::exp(-0.5 * time) * libm::cos(3.0 * time);
+            let sums =
+                LedgerSums { lost_in_dampers: 800.0 * (1.0 - libm::exp(-time)), ..LedgerSums::default() };
+            (time, Energy { kinetic: fall.abs(), gravitational: 5e4 - fall.abs(), sums, ..Energy::default() })
+        };
+        (0..100).map(sample).collect()
+    }
+
+    #[test]
+    fn plots_are_written_in_both_formats() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (name, begin) in [("e.svg", &b"<svg"[..]), ("e.PNG", &b"\x89PNG"[..])] {
+            let path = folder.path().join(name);
+            let written = energy(&path, "Energy <of> \"a & b\"", &samples()).expect("it can be written");
+            let bytes = std::fs::read(&path).expect("it was written");
+            assert!(bytes.starts_with(begin));
+            assert_eq!(written.bytes, bytes.len() as u64);
+        }
+        let svg = std::fs::read_to_string(folder.path().join("e.svg")).expect("it is text");
+        assert!(svg.contains("Energy &lt;of&gt; &quot;a &amp; b&quot;") && svg.ends_with("</svg>\n"));
+        assert_eq!(
+            svg.matches("stroke-dasharray=\"7 4\"").count(),
+            6,
+            "three dashed curves, each also in the legend"
+        );
+    }
+
+    #[test]
+    fn odd_samples_make_a_plot_too() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("e.png");
+        let wild = Energy { kinetic: f64::NAN, elastic: f64::INFINITY, ..Energy::default() };
+        for samples in [vec![], vec![(0.0, Energy::default())], vec![(0.0, wild), (1.0, wild)]] {
+            energy(&path, "odd", &samples).expect("it can be written");
+        }
+    }
+
+    #[test]
+    fn names_are_checked_before_a_run() {
+        let folder = tempfile::tempdir().expect("a folder");
+        assert_eq!(check(&folder.path().join("e.svg")), Ok(()));
+        assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 0);
+        let code = |path: &Path| check(path).map_err(|error| error.code());
+        assert_eq!(code(Path::new("e.pdf")), Err(Code::Unsupported));
+        assert_eq!(code(Path::new("e")), Err(Code::Unsupported));
+        assert_eq!(code(&folder.path().join("none/e.svg")), Err(Code::Unwritable));
+    }
+}
