@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::builder::RangedU64ValueParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
+use sprung_render::export::EXPORTERS;
 
 /// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
 ///
@@ -16,6 +17,16 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Option<Command>,
+}
+
+impl Cli {
+    /// The whole definition, with the formats of the one list of exporters in the help.
+    pub fn definition() -> clap::Command {
+        let formats: Vec<String> =
+            EXPORTERS.iter().map(|exporter| format!(".{} ({})", exporter.ending, exporter.description)).collect();
+        let help = format!("A file to write, in the format of its ending: {}. May be given several times", formats.join(", "));
+        Self::command().mut_subcommand("run", |run| run.mut_arg("output", |output| output.help(help)))
+    }
 }
 
 /// The commands.
@@ -69,7 +80,7 @@ pub struct RunArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// A file to write; its ending chooses the format (csv, npz, png, gif, mp4). May be given several times
+    /// A file to write; its ending chooses the format
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Record frames 0 to N

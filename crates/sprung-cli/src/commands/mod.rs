@@ -8,7 +8,6 @@ mod run;
 mod scenes;
 mod show;
 
-use clap::CommandFactory;
 use sprung::{Code, Error, Result};
 
 use crate::args::{Cli, Command};
@@ -32,7 +31,7 @@ pub fn run(cli: Cli) -> Result<()> {
         }
         Some(Command::Completions { shell }) => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "sprung", &mut script);
+            clap_complete::generate(shell, &mut Cli::definition(), "sprung", &mut script);
             console::say(String::from_utf8_lossy(&script).trim_end());
             Ok(())
         }
@@ -43,7 +42,7 @@ pub fn run(cli: Cli) -> Result<()> {
 /// One page for the command and all of its sub-commands.
 fn man() -> Result<()> {
     let mut page = Vec::new();
-    let mut command = Cli::command().flatten_help(true);
+    let mut command = Cli::definition().flatten_help(true);
     command.build();
     clap_mangen::Man::new(command)
         .render(&mut page)

@@ -39,7 +39,7 @@ impl Recorder {
         }
         let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
         let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;
-        let title = format!("Energy of {}", info.title);
+        let title = format!("Energy: {}", info.title);
         Ok(Self { exports, plot: plot.cloned(), title, samples: Vec::new(), held: Vec::new(), frames: 0 })
     }
 
@@ -76,6 +76,10 @@ impl Recorder {
     pub fn finish(self, quiet: bool) -> (Vec<Written>, Result<()>) {
         let mut written = Vec::new();
         let mut outcome = Ok(());
+        if self.frames == 0 {
+            // Dropped, they leave nothing behind.
+            return (written, outcome);
+        }
         for export in self.exports {
             let bar = console::progress(1000, "writing", quiet);
             let finished = export.finish(&mut |share| bar.set_position((1000.0 * share) as u64));

@@ -9,6 +9,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use sprung::{Code, Error, Result};
+use sprung_io::export::{CSV, NPZ};
 use sprung_io::{Exporter, Options};
 
 pub use gif::GIF;
@@ -16,7 +17,7 @@ pub use mp4::MP4;
 pub use png::{PNG, write_png};
 
 /// All exporters, chosen by the ending of a file's name.
-pub static EXPORTERS: &[Exporter] = &[PNG, GIF, MP4];
+pub static EXPORTERS: &[Exporter] = &[CSV, NPZ, PNG, GIF, MP4];
 
 /// Allowed widths and heights of pictures, pixels.
 pub const SIZE_RANGE: RangeInclusive<u32> = 16..=8192;
