@@ -62,7 +62,11 @@ fn copy_table(lines: &mut Vec<Vec<u8>>, line: usize, to: usize) {
     let end = (line + 1..lines.len()).find(|&line| is_header(&lines[line])).unwrap_or(lines.len());
     // To before a header, where a table can stand.
     let to = (to..lines.len()).find(|&line| is_header(&lines[line])).unwrap_or(lines.len());
-    let table = lines[start..end].to_vec();
+    let mut table = lines[start..end].to_vec();
+    // Two bodies of one name are refused.
+    for line in table.iter_mut().filter(|line| line.starts_with(b"name = \"") && line.ends_with(b"\"")) {
+        line.insert(line.len() - 1, b'x');
+    }
     lines.splice(to..to, table);
 }
 

@@ -3,19 +3,21 @@
 
 mod lines;
 
-use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
+use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target, fuzzer_mutate};
 use sprung::scene::Scene;
 
 /// Enough for every branch of the code that builds scenes, and little enough for thousands of scenes a second.
 const MAX_POINTS: u64 = 100;
 const MAX_SPRINGS: u64 = 1_000;
 
-fuzz_target!(|bytes: &[u8]| {
+fuzz_target!(|bytes: &[u8]| -> Corpus {
     let scene = match Scene::from_bytes(bytes, "fuzz.toml") {
         Ok(scene) => scene,
         Err(error) => {
             assert_eq!(error.place().file.as_deref(), Some("fuzz.toml"), "an error names its file: {error}");
-            return;
+            // Reading ends at the first error, so every error is one change away from a scene that is right: only
+            // those are kept to be changed further.
+            return Corpus::Reject;
         }
     };
     // What is written of a scene says the same as what was read.
@@ -29,6 +31,7 @@ fuzz_target!(|bytes: &[u8]| {
         // What is built, a simulation accepts.
         sprung::Simulation::new(model, params, state).expect("a scene that builds is valid");
     }
+    Corpus::Keep
 });
 
 fuzz_mutator!(|bytes: &mut [u8], length: usize, max_length: usize, seed: u32| {

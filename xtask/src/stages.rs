@@ -95,8 +95,8 @@ pub fn fuzz() -> Outcome {
         .args([&found, &seeds])
         .arg(format!("-artifact_prefix={}/", crashes.display()))
         .arg(format!("-max_total_time={FUZZ_SECONDS}"))
-        .args(["-dict=scene.dict", "-max_len=8192", "-timeout=10", "-rss_limit_mb=2048"])
-        .args(["-use_value_profile=1", "-print_final_stats=1", "-verbosity=0"]);
+        .args(["-dict=scene.dict", "-max_len=4096", "-mutate_depth=2"])
+        .args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=0"]);
     run(&mut command).map_err(|reason| {
         format!(
             "{reason}; the input that did it is in target/fuzz-crashes, see fuzz/README.md for how to go on"
