@@ -84,13 +84,13 @@ pub struct RunArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Record frames 0 to N
-    #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
     pub frames: Option<u64>,
     /// Record this many simulated seconds [default: 10]
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     pub seconds: Option<f64>,
     /// Record F frames per simulated second; otherwise a frame is `substeps` steps of `dt`
-    #[arg(long, value_name = "F", value_parser = positive)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = positive)]
     pub fps: Option<f64>,
     /// Bring the scene to rest first
     #[arg(long)]
@@ -99,13 +99,13 @@ pub struct RunArgs {
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// Simulated time of the picture in a .png, in seconds [default: the last frame]
-    #[arg(long, value_name = "T", value_parser = not_negative)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = not_negative)]
     pub at: Option<f64>,
     /// Width and height of pictures in pixels, such as 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Worker threads; the result is the same for any number [default: by the scene's size]
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
     /// No progress bar and no summary
     #[arg(short, long)]
@@ -118,7 +118,7 @@ pub struct BenchArgs {
     /// Built-in scenes or scene files [default: the four scenes of the assignment, cloth512 and jelly64]
     pub scenes: Vec<String>,
     /// Worker threads [default: by the scene's size]
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
     /// Print one JSON object per scene, each on a line of its own
     #[arg(long)]

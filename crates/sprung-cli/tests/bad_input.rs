@@ -30,7 +30,7 @@ fn bad_scene_files() {
     let cases: &[(&str, &[&str])] = &[
         ("", &["bad.toml", "empty"]),
         ("dt = \n", &["bad.toml:1:"]),
-        (&format!("dt = nan\n{BODY}"), &["bad.toml:1:6: dt:", "NaN"]),
+        (&format!("dt = nan\n{BODY}"), &["bad.toml:1:6: dt:", "nan", "finite"]),
         (&format!("dt = inf\n{BODY}"), &["bad.toml:1:6: dt:"]),
         (&format!("dt = -1\n{BODY}"), &["bad.toml:1:6: dt:", "-1"]),
         (&format!("dt = \"soon\"\n{BODY}"), &["bad.toml:1:6: dt:", "auto"]),
@@ -58,7 +58,7 @@ fn scenes_that_would_be_too_large() {
                 [[body.springs]]\nradius = 9\nstiffness = 1\n";
     std::fs::write(folder.path().join("dense.toml"), text).unwrap();
     let line = complaint(folder.path(), &["show", "dense.toml"]);
-    assert!(line.starts_with("dense.toml:6:") && line.contains("20,000,000") && line.contains("max_springs"), "{line}");
+    assert!(line.starts_with("dense.toml:6:") && line.contains("20000000") && line.contains("max_springs"), "{line}");
     let text = "[[body]]\nname = \"a\"\nlattice = { points = [4000000000, 4000000000, 4000000000], spacing = 1 }\npoint_mass = 1\n";
     std::fs::write(folder.path().join("huge.toml"), text).unwrap();
     let line = complaint(folder.path(), &["show", "huge.toml"]);
