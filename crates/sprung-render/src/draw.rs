@@ -14,6 +14,8 @@ const COILS: usize = 40;
 const CROWD: usize = 20_000;
 /// Neighbours closer than this, in pixels, are too close for balls and wires where there is a surface.
 const CLOSEST_PIXELS: f32 = 6.0;
+/// Fixed points that are marked on a body shown by its surface alone.
+const MOST_MARKS: usize = 200;
 /// Springs that are drawn at all.
 const MOST_WIRES: usize = 400_000;
 
@@ -113,15 +115,24 @@ impl Look {
         seen: &[Option<Projected>],
         open: &[f32],
     ) {
-        for (index, body) in
-            model.bodies().iter().enumerate().filter(|(index, _)| self.body_in_detail[*index])
-        {
+        for (index, body) in model.bodies().iter().enumerate() {
+            let detail = self.body_in_detail[index];
             let colour = srgb(BALLS[index % BALLS.len()]);
+            let mut marks_left = MOST_MARKS;
             for point in body.points.clone() {
-                let Some(Projected { pixel, depth }) = seen[point] else { continue };
                 let fixed = params.is_fixed(point);
-                let radius = if fixed { 1.25 * self.ball } else { self.ball };
-                let radius = radius.max(if fixed { 2.2 } else { 0.9 } * depth / camera.focal);
+                let Some(Projected { pixel, depth }) = seen[point] else { continue };
+                // Of a body shown by its surface alone, only the fixed points are marked, large enough to be seen.
+                let (radius, least) = match (detail, fixed) {
+                    (true, true) => (1.25 * self.ball, 2.2),
+                    (true, false) => (self.ball, 0.9),
+                    (false, true) if marks_left > 0 => {
+                        marks_left -= 1;
+                        (self.ball, 4.5)
+                    }
+                    (false, _) => continue,
+                };
+                let radius = radius.max(least * depth / camera.focal);
                 shapes.spheres.push(Sphere {
                     centre: pixel,
                     depth,

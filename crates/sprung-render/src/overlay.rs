@@ -112,7 +112,7 @@ impl Overlay {
             text::draw(image, &format!("+{label} N"), Vec2::new(right, below), Anchor::End, ink);
             below += 1.5 * unit;
         }
-        if self.any_fixed && self.full_force.is_some() {
+        if self.any_fixed {
             text::draw(image, "fixed point", Vec2::new(right, below), Anchor::End, style);
             let left = right - text::width("fixed point", unit) - 0.8 * unit;
             image.disc(Vec2::new(left, below - 0.3 * unit), 0.32 * unit, srgb(FIXED));

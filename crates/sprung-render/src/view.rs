@@ -171,7 +171,7 @@ impl SceneView {
 
 /// The smallest of 1, 2, 5, 10, … (and their fractions) that is not below a force; 1 N where there is none.
 fn nice_above(force: f32) -> f32 {
-    if !(force > 1e-6) || !force.is_finite() {
+    if force.is_nan() || force <= 1e-6 || force == f32::INFINITY {
         return 1.0;
     }
     let step = nice_step(force);
