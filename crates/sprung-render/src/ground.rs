@@ -27,6 +27,8 @@ pub struct Ground {
     grid: f32,
     /// Direction in which shadows fall, for 1 m of height.
     slant: Vec3,
+    /// Colours of the sheet, its lines and its shadows.
+    colours: [Colour; 3],
 }
 
 /// How dark the ground is, at one moment.
@@ -67,6 +69,7 @@ impl Ground {
             shadow_reach: 1.5 * half,
             grid: nice_step(half / 5.0),
             slant: light / light.dot(normal) - normal,
+            colours: [0xfb_fc_fd, 0x4a_58_68, 0x26_2f_3c].map(srgb),
         }
     }
 
@@ -161,6 +164,7 @@ impl Ground {
 
     /// Sheet, lines and shadow at a place of the plane.
     fn paint(&self, place: Vec2, widths: Vec2, far: f32, depth: f32, shadow: &Shadow) -> Hit {
+        let [sheet, line_colour, dark] = self.colours;
         let fade = {
             let near = ((1.0 - far) / 0.75).clamp(0.0, 1.0);
             near * near * (3.0 - 2.0 * near)
@@ -173,10 +177,10 @@ impl Ground {
         };
         let lines = |step| line(place.x, widths.x, step).max(line(place.y, widths.y, step));
         let strongest = (0.32 * lines(self.grid)).max(0.5 * lines(5.0 * self.grid));
-        let mut hit = Hit { depth, colour: srgb(0xfb_fc_fd), alpha: 0.5 * fade };
-        hit.cover(srgb(0x4a_58_68), strongest * fade);
+        let mut hit = Hit { depth, colour: sheet, alpha: 0.5 * fade };
+        hit.cover(line_colour, strongest * fade);
         let texel = (place + self.shadow_reach) * (SHADOW_SIDE as f32 / (2.0 * self.shadow_reach));
-        hit.cover(srgb(0x26_2f_3c), 0.62 * shadow.at(texel));
+        hit.cover(dark, 0.62 * shadow.at(texel));
         hit
     }
 }

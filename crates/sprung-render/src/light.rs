@@ -72,9 +72,8 @@ impl Studio {
     }
 }
 
-/// The background at a height (0 top, 1 bottom) and a squared distance from the middle (0 middle, about 1 in the corners).
-pub fn backdrop(height: f32, off_centre: f32) -> Colour {
+/// The background at a height, 0 at the top and 1 at the bottom.
+pub fn backdrop(height: f32) -> Colour {
     let (top, bottom) = (srgb(0xf6_f8_fa), srgb(0xd8_df_e6));
-    let eased = height * height * (3.0 - 2.0 * height);
-    top.lerp(bottom, eased) * (1.0 - 0.06 * off_centre)
+    top.lerp(bottom, height * height * (3.0 - 2.0 * height))
 }

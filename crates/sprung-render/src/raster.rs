@@ -117,6 +117,15 @@ impl<'a, const N: usize> Band<'a, N> {
         Self { width, first_row, rows, samples, studio, haze, depth, colour }
     }
 
+    /// Empties the band and moves it to other rows.
+    pub fn restart(&mut self, first_row: usize, rows: usize) {
+        (self.first_row, self.rows) = (first_row, rows);
+        self.depth.clear();
+        self.depth.resize(self.width * rows, [f32::INFINITY; N]);
+        // Colours count only where there is a depth, so what is left of other rows does no harm.
+        self.colour.resize(self.width * rows, [Colour::ZERO; N]);
+    }
+
     /// Depths and colours of the samples of a pixel; `row` counts from the band's first.
     pub fn pixel(&self, column: usize, row: usize) -> (&[f32; N], &[Colour; N]) {
         let index = row * self.width + column;

@@ -109,16 +109,20 @@ impl SceneView {
         };
         let shadows: Vec<Shadow> =
             self.grounds.iter().map(|ground| ground.shadow(positions, self.look.spacing)).collect();
-        image.rgb.par_chunks_mut(3 * width * BAND_ROWS).enumerate().for_each(|(index, bytes)| {
-            let (first, rows) = (index * BAND_ROWS, bytes.len() / (3 * width));
-            let mut band = Band::new(width, first, rows, samples, &self.studio, self.haze);
-            shapes.triangles.iter().for_each(|triangle| band.triangle(triangle));
-            shapes.spheres.iter().for_each(|sphere| band.sphere(sphere));
-            shapes.capsules.iter().for_each(|wire| band.capsule(wire));
-            for (row, bytes) in bytes.chunks_exact_mut(3 * width).enumerate() {
-                self.resolve(&band, row, first + row, &shadows, bytes);
-            }
-        });
+        let empty = || Band::new(width, 0, 0, samples, &self.studio, self.haze);
+        image.rgb.par_chunks_mut(3 * width * BAND_ROWS).enumerate().for_each_init(
+            empty,
+            |band, (index, bytes)| {
+                let (first, rows) = (index * BAND_ROWS, bytes.len() / (3 * width));
+                band.restart(first, rows);
+                shapes.triangles.iter().for_each(|triangle| band.triangle(triangle));
+                shapes.spheres.iter().for_each(|sphere| band.sphere(sphere));
+                shapes.capsules.iter().for_each(|wire| band.capsule(wire));
+                for (row, bytes) in bytes.chunks_exact_mut(3 * width).enumerate() {
+                    self.resolve(band, row, first + row, &shadows, bytes);
+                }
+            },
+        );
         image
     }
 
@@ -139,11 +143,12 @@ impl SceneView {
             .map(|(ground, shadow)| ground.row(&self.camera, shadow, y as f32 + 0.5))
             .collect();
         let from_middle = 2.0 * (y as f32 + 0.5) / height - 1.0;
+        let base = backdrop((y as f32 + 0.5) / height);
         let mut hits: Vec<Hit> = Vec::new();
         for (x, bytes) in bytes.chunks_exact_mut(3).enumerate() {
             let aside = 2.0 * (x as f32 + 0.5) / width - 1.0;
-            let behind =
-                backdrop((y as f32 + 0.5) / height, 0.5 * (aside * aside + from_middle * from_middle));
+            // A little darker towards the corners.
+            let behind = base * (1.0 - 0.03 * (aside * aside + from_middle * from_middle));
             hits.clear();
             hits.extend(rays.iter().filter_map(|ray| ray(x as f32 + 0.5)));
             hits.sort_by(|a, b| b.depth.total_cmp(&a.depth)); // the farthest first

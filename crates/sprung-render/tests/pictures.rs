@@ -120,11 +120,14 @@ fn every_exporter_keeps_its_promises() {
         assert_eq!(names(), [format!("out.{}", exporter.ending)]);
         let bytes = std::fs::metadata(&path).expect("it is there").len();
         assert_eq!((written.bytes, &written.path), (bytes, &path));
-        // A run that never recorded a frame says so.
-        assert!(write(&path, &motion, &[], &options).is_err());
-        // A folder that is not there, and a size that is not allowed, are found before the run.
+        // A folder that is not there is found before the run.
         let nowhere = folder.path().join("none").join(format!("out.{}", exporter.ending));
         assert!((exporter.open)(&nowhere, &motion.info, &options).is_err());
+        if ["csv", "npz"].contains(&exporter.ending) {
+            continue;
+        }
+        // A picture of no frame at all cannot be made.
+        assert!(write(&path, &motion, &[], &options).is_err());
         let tiny = Options { size: Some([3, 3]), at: None };
         assert!((exporter.open)(&path, &motion.info, &tiny).is_err());
     }
