@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::energy::{self, Drives, Energy, Ledger};
+use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
 use crate::history::{DEFAULT_HISTORY_BYTES, Event, History};
 use crate::model::Model;
@@ -48,6 +48,9 @@ pub struct Simulation {
 impl Simulation {
     /// Bundles a model, its parameters and a state to start from. Velocities of fixed points become zero.
     ///
+    /// A state that was taken from another simulation goes on as it would have there, bit for bit, its ledger too; under
+    /// parameters that do not explain the energy it has, the ledger starts anew.
+    ///
     /// # Errors
     /// [`Code::OutOfRange`] or [`Code::Conflict`] if a value is not allowed or the parts do not fit together.
     pub fn new(model: impl Into<Arc<Model>>, params: Params, mut state: State) -> Result<Self> {
@@ -55,8 +58,11 @@ impl Simulation {
         params.validate(&model)?;
         check_state(&model, &state)?;
         stop_fixed_points(&params, &mut state);
-        state.restart_clock();
-        state.ledger.start = Energy::of(&model, &params, &state).total();
+        state.check_clock(params.dt);
+        if state.ledger == LedgerSums::default() || watch::excess(&model, &params, &state).is_some() {
+            let start = Energy::of(&model, &params, &state).total();
+            state.ledger = LedgerSums { start, ..LedgerSums::default() };
+        }
         Ok(Self {
             solver: SymplecticEuler::new(&model, &params),
             workers: Arc::new(Inline),
@@ -113,7 +119,8 @@ impl Simulation {
         progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
     ) -> Result<Settled> {
         self.history.branch_at(self.state.step);
-        let settled = self.settle_unlogged(options, progress)?;
+        let events = self.history.events_at(self.state.step).len();
+        let settled = self.settle_unlogged(options, progress, events)?;
         self.history.record(self.state.step, Event::Settle(options));
         Ok(settled)
     }
@@ -142,11 +149,11 @@ impl Simulation {
             return Err(Error::new(Code::OutOfRange, sentence));
         }
         let (state, params) = self.history.before(step).clone();
-        self.restore(state, params);
-        self.redo_events()?;
+        self.restore(state, params, 0);
+        self.redo_events(0)?;
         while self.state.step < step {
             self.advance()?;
-            self.redo_events()?;
+            self.redo_events(0)?;
         }
         Ok(())
     }
@@ -155,7 +162,7 @@ impl Simulation {
     pub fn reset(&mut self) {
         let (state, params) = self.history.first().clone();
         self.history = History::new(&state, &params, self.history_bytes);
-        self.restore(state, params);
+        self.restore(state, params, 0);
     }
 
     /// Positions and velocities now, in the user's order, in a buffer that is used again.
@@ -180,6 +187,7 @@ impl Simulation {
     pub fn keep_history(&mut self, bytes: usize) {
         self.history_bytes = bytes;
         self.history = History::new(&self.state, &self.params, bytes);
+        self.watch.restart(&self.state, &self.params, 0);
     }
 
     /// Lends the engine worker threads. However many there are, the bits are the same.
@@ -232,10 +240,10 @@ impl Simulation {
         match self.watch.look(&self.model, &self.params, &self.state, finite) {
             None => Ok(()),
             Some(blow_up) => {
-                let (state, params) = self.watch.good().clone();
-                self.restore(state, params);
+                let ((state, params), events) = (self.watch.good().clone(), self.watch.good_events());
+                self.restore(state, params, events);
                 self.history.branch_at(self.state.step);
-                self.redo_events()?;
+                self.redo_events(events)?;
                 Err(Error::from_blow_up(blow_up))
             }
         }
@@ -260,16 +268,18 @@ impl Simulation {
         Ok(())
     }
 
+    /// Settles as the next event after so many others at the current step.
     fn settle_unlogged(
         &mut self,
         options: SettleOptions,
         progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
+        events: usize,
     ) -> Result<Settled> {
         let before = self.state.clone();
         let settled = self.relax(options, progress);
         if settled.is_err() {
             self.state = before;
-            self.watch.restart(&self.state, &self.params);
+            self.watch.restart(&self.state, &self.params, events);
             return settled;
         }
         // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
@@ -279,7 +289,7 @@ impl Simulation {
         self.state.clock = before.clock;
         self.state.ledger = before.ledger;
         self.state.ledger.work_in += self.energy().total() - energy_before;
-        self.watch.restart(&self.state, &self.params);
+        self.watch.restart(&self.state, &self.params, events + 1);
         settled
     }
 
@@ -324,22 +334,23 @@ impl Simulation {
         Err(Error::new(Code::NotSettled, sentence).with_fix("allow a larger residual force or more steps"))
     }
 
-    fn restore(&mut self, state: State, params: Params) {
+    /// Goes to a good state, that after so many of the events logged for its step.
+    fn restore(&mut self, state: State, params: Params, events: usize) {
         if params != self.params {
             self.params = params;
             self.solver = SymplecticEuler::new(&self.model, &self.params);
         }
         self.state = state;
-        self.watch.restart(&self.state, &self.params);
+        self.watch.restart(&self.state, &self.params, events);
     }
 
-    /// Does again what the log says was done at the current step.
-    fn redo_events(&mut self) -> Result<()> {
-        for event in self.history.events_at(self.state.step) {
+    /// Does again what the log says was done at the current step, but for the first so many events.
+    fn redo_events(&mut self, done: usize) -> Result<()> {
+        for (index, event) in self.history.events_at(self.state.step).into_iter().enumerate().skip(done) {
             match event {
                 Event::Change(change) => self.change_unlogged(&change)?,
                 Event::Settle(options) => {
-                    self.settle_unlogged(options, &mut |_| ControlFlow::Continue(()))?;
+                    self.settle_unlogged(options, &mut |_| ControlFlow::Continue(()), index)?;
                 }
             }
         }

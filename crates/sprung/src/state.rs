@@ -50,6 +50,14 @@ impl State {
         self.time = self.clock.1 + (self.step - self.clock.0) as f64 * dt;
     }
 
+    /// Starts the clock anew unless it shows this state's time: a state that was put together by hand has none.
+    pub(crate) fn check_clock(&mut self, dt: f64) {
+        let (step, time) = self.clock;
+        if self.step < step || time + (self.step - step) as f64 * dt != self.time {
+            self.restart_clock();
+        }
+    }
+
     /// From here on steps have another length.
     pub(crate) fn restart_clock(&mut self) {
         self.clock = (self.step, self.time);

@@ -173,25 +173,33 @@ impl BlowUp {
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     good: (State, Params),
+    /// How many of the events logged for the good state's step it already holds: settling makes a good state of its own.
+    good_events: usize,
     /// Steps in a row with too much energy.
     streak: u64,
 }
 
 impl Watch {
     pub fn new(state: &State, params: &Params) -> Self {
-        Self { good: (state.clone(), params.clone()), streak: 0 }
+        Self { good: (state.clone(), params.clone()), good_events: 0, streak: 0 }
     }
 
-    /// Starts over from a state that is known to be good.
-    pub fn restart(&mut self, state: &State, params: &Params) {
+    /// Starts over from a state that is known to be good, after so many of the events logged for its step.
+    pub fn restart(&mut self, state: &State, params: &Params, events: usize) {
         self.good.0.clone_from(state);
         self.good.1.clone_from(params);
+        self.good_events = events;
         self.streak = 0;
     }
 
     /// The last state that was looked at and found good.
     pub fn good(&self) -> &(State, Params) {
         &self.good
+    }
+
+    /// How many of the events logged for its step the good state already holds.
+    pub fn good_events(&self) -> usize {
+        self.good_events
     }
 
     /// After every step: what blew up, if something did.
@@ -203,7 +211,7 @@ impl Watch {
             return None;
         }
         let Some(excess) = excess(model, params, state) else {
-            self.restart(state, params);
+            self.restart(state, params, 0);
             return None;
         };
         self.streak += 1;

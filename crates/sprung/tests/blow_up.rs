@@ -1,0 +1,228 @@
+//! A run that blows up is caught, its last good state kept, and the cause named; a healthy run is left alone.
+
+mod common;
+
+use common::{oscillator, scenes, simulation, steps};
+use sprung::{
+    Cause, Change, Code, Error, Grab, Material, ModelBuilder, Plane, SettleOptions, Simulation, Vec3,
+};
+
+/// Steps until it blows up.
+fn blow(run: &mut Simulation, most: u64) -> (Error, f32) {
+    let mut fastest = 0.0f32;
+    for _ in 0..most {
+        if let Err(error) = run.step(run.params().dt) {
+            return (error, fastest);
+        }
+        fastest = run.state().velocity.iter().map(|v| v.length()).fold(fastest, f32::max);
+    }
+    panic!("{most} steps, and it has not blown up; the fastest point went {fastest} m/s");
+}
+
+fn is_finite(run: &Simulation) -> bool {
+    let state = run.state();
+    state.position.iter().chain(&state.velocity).all(|vector| vector.is_finite())
+}
+
+fn jelly(dt: f64) -> Simulation {
+    let mut run = scenes::engine(&scenes::jelly());
+    run.change(Change::Dt(dt)).expect("allowed");
+    run
+}
+
+/// The jelly's limit is 0.0119753 s at rest. At 0.013 it goes non-finite near step 400 if nobody looks.
+#[test]
+fn a_step_over_the_limit_is_caught_and_explained() {
+    let mut run = jelly(0.013);
+    let (error, _) = blow(&mut run, 1000);
+    assert_eq!((error.code(), error.exit_status()), (Code::BlewUp, 3));
+    let report = error.blow_up().expect("it says what happened").clone();
+    assert!(report.step <= 450, "caught at step {}", report.step);
+    assert!((report.time - 0.013 * report.step as f64).abs() < 1e-9);
+
+    // The last good state is the current one, finite and calm, and can be gone on from.
+    assert!(is_finite(&run));
+    assert_eq!((run.state().step, run.state().time), (report.good_step, report.good_time));
+    assert!(report.good_step < report.step);
+    assert!(!run.is_suspect());
+
+    // The limit that was crossed, a spring of the jelly with its two points, and a step that mends it.
+    let certified = report.dt_limit_certified.expect("springs set a limit");
+    let every = report.dt_limit_every_configuration.expect("springs set a limit");
+    assert!(every < 0.013 && every <= certified * 1.000_001);
+    let spring = report.spring.expect("a spring sets the limit");
+    let ends = run.model().springs()[spring].map(|end| end as usize);
+    assert_eq!(report.points, ends);
+    let fix = report.suggested_dt().expect("a step that mends it");
+    assert!(fix < 0.0119753 && fix > 0.003, "{fix}");
+    let text = error.to_string();
+    for part in [
+        format!("t = {:.4} s", report.time),
+        format!("spring {spring}"),
+        format!("points {} and {}", ends[0], ends[1]),
+        "limit".to_owned(),
+        format!("dt = {fix}"),
+    ] {
+        assert!(text.contains(&part), "\"{part}\" is missing in: {text}");
+    }
+
+    run.change(Change::Dt(fix)).expect("allowed");
+    steps(&mut run, 200);
+}
+
+/// At 0.0121 the jelly reaches some 361 m/s and never goes non-finite: only its energy tells.
+#[test]
+fn a_step_barely_over_the_limit_is_caught_by_its_energy() {
+    let mut run = jelly(0.0121);
+    let (error, fastest) = blow(&mut run, 2000);
+    let report = error.blow_up().expect("it says what happened");
+    assert!(
+        matches!(report.cause, Cause::EnergyFromNowhere { excess } if excess > 0.0),
+        "{:?}",
+        report.cause
+    );
+    assert!(is_finite(&run) && fastest.is_finite());
+    assert_eq!(run.state().step, report.good_step);
+}
+
+#[test]
+fn the_very_step_that_is_not_finite_is_caught() {
+    let mut run = simulation(oscillator(1.0, Material { stiffness: 1e6, damping: 0.0 }, 1.0, 1.1, 0.0));
+    let (error, _) = blow_of_dt(&mut run, 1e3);
+    assert_eq!(error.blow_up().map(|report| report.cause), Some(Cause::NotFinite));
+    assert!(is_finite(&run));
+}
+
+fn blow_of_dt(run: &mut Simulation, dt: f64) -> (Error, f32) {
+    run.change(Change::Dt(dt)).expect("allowed");
+    blow(run, 100)
+}
+
+#[test]
+fn after_a_blow_up_state_params_and_log_fit_together() {
+    let mut run = scenes::engine(&scenes::chain());
+    steps(&mut run, 20);
+    run.change(Change::Gravity(Vec3::new(0.0, -5.0, 0.0))).expect("allowed");
+    steps(&mut run, 15);
+    run.change(Change::Gravity(Vec3::new(1.0, -5.0, 0.0))).expect("allowed");
+    run.change(Change::Stiffness(0..14, 1e9)).expect("allowed");
+    let (error, _) = blow(&mut run, 500);
+    let report = error.blow_up().expect("it says what happened");
+    let good = report.good_step;
+    assert_eq!(run.state().step, good);
+    assert!(run.log().iter().all(|(at, _)| *at <= good), "what came after the good state is forgotten");
+    assert_eq!(run.params().gravity, Vec3::new(0.0, -5.0, 0.0), "as the log has it at step {good}");
+    assert_eq!(run.params().spring_stiffness[0], 200.0);
+    assert_rewinds(&mut run);
+}
+
+/// What is there now is what the log says: going back and forth again, and on, gives the same bits.
+fn assert_rewinds(run: &mut Simulation) {
+    let (state, params) = (run.state().clone(), run.params().clone());
+    run.rewind_to(0).expect("the first step");
+    run.rewind_to(state.step).expect("it is recorded");
+    assert_eq!((run.state(), run.params()), (&state, &params));
+}
+
+/// Changes and settling at one and the same step, then a blow-up: what was done before the good state is not done twice.
+#[test]
+fn a_blow_up_after_settling_goes_back_to_the_settled_state() {
+    let mut run = scenes::engine(&scenes::chain());
+    steps(&mut run, 7);
+    run.change(Change::Gravity(Vec3::new(4.0, -2.0, 0.0))).expect("allowed");
+    run.settle(SettleOptions { residual_force: Some(0.5), ..SettleOptions::default() }).expect("it settles");
+    run.change(Change::Gravity(Vec3::new(0.0, -9.81, 0.0))).expect("allowed");
+    run.settle(SettleOptions { residual_force: Some(0.1), ..SettleOptions::default() }).expect("it settles");
+    run.change(Change::Gravity(Vec3::new(0.0, -7.0, 0.0))).expect("allowed");
+    let (state, params) = (run.state().clone(), run.params().clone());
+    run.change(Change::Dt(0.5)).expect("allowed");
+    let with_dt = run.params().clone();
+    let _ = blow(&mut run, 500);
+    assert_eq!(run.state().step, 7);
+    assert_eq!(run.state_hash(), state.hash(), "the settled state, bit for bit");
+    assert_eq!(run.params(), &with_dt);
+    assert_ne!(run.params(), &params);
+    assert_rewinds(&mut run);
+}
+
+#[test]
+fn a_history_begun_anew_is_never_gone_back_beyond() {
+    let mut run = scenes::engine(&scenes::chain());
+    steps(&mut run, 23);
+    run.change(Change::Gravity(Vec3::new(0.0, -3.0, 0.0))).expect("allowed");
+    steps(&mut run, 2);
+    run.keep_history(1 << 20);
+    let (state, params) = (run.state().clone(), run.params().clone());
+    let (error, _) = blow_of_dt(&mut run, 1.0);
+    assert!(error.blow_up().expect("it says what happened").good_step >= 25);
+    assert!(run.state().step >= 25);
+    run.rewind_to(25).expect("the first step of this history");
+    run.reset();
+    assert_eq!((run.state(), run.params()), (&state, &params));
+}
+
+fn stays_calm(run: &mut Simulation, count: u64, what: &str) {
+    for _ in 0..count {
+        run.step(run.params().dt).unwrap_or_else(|error| panic!("false alarm, {what}: {error}"));
+    }
+}
+
+#[test]
+fn the_four_scenes_raise_no_alarm() {
+    for scene in scenes::four() {
+        stays_calm(&mut scenes::engine(&scene), 3000, scene.name);
+    }
+}
+
+#[test]
+fn a_thrown_point_raises_no_alarm() {
+    // Also at the one speed for which its energy is exactly zero at the start.
+    for (x, v, dt) in [(0.0, 10.0, 0.01), (-5.0, 98.1f32.sqrt(), 1e-3), (1e5, 0.0, 0.1), (0.0, 0.0, 1e-4)] {
+        let mut builder = ModelBuilder::new();
+        builder.add_point(Vec3::Y * x, 1.0).expect("allowed");
+        builder.set_velocity(0, Vec3::new(0.0, v, 0.0)).expect("allowed");
+        let (model, mut params, state) = builder.build().expect("there is a point");
+        params.dt = dt;
+        stays_calm(&mut simulation((model, params, state)), 5000, "thrown");
+    }
+}
+
+#[test]
+fn a_settled_scene_raises_no_alarm() {
+    let mut run = scenes::engine(&scenes::chain());
+    run.settle(SettleOptions::default()).expect("it settles");
+    stays_calm(&mut run, 2000, "settled");
+    let mut run = jelly(0.01);
+    run.settle(SettleOptions { residual_force: Some(1.0), ..SettleOptions::default() }).expect("it settles");
+    stays_calm(&mut run, 500, "settled jelly");
+}
+
+#[test]
+fn hard_handling_raises_no_alarm() {
+    let mut run = scenes::engine(&scenes::cloth());
+    let springs = run.model().spring_count();
+    let grab = |target| Change::Grab(Grab { point: 210, target, stiffness: 400.0, damping: 0.0 });
+    for change in [
+        grab(Vec3::new(0.0, 60.0, 20.0)),
+        grab(Vec3::new(40.0, -30.0, 20.0)),
+        Change::Release(210),
+        Change::Gravity(Vec3::new(0.0, 20.0, 0.0)),
+        Change::Gravity(Vec3::new(0.0, -30.0, 5.0)),
+        Change::Cut(0..springs / 2, true),
+        Change::Mass(0..200, 2.0),
+        Change::Mass(0..200, 0.5),
+        Change::Pin(100..110, true),
+        Change::Pin(100..110, false),
+        Change::Cut(0..springs / 2, false),
+        Change::RestScale(0..springs, 1.2),
+        Change::Stiffness(0..springs, 100.0),
+        Change::Planes(vec![Plane::level(-5.0, 100.0, 3.0)]),
+        Change::Planes(vec![Plane::level(5.0, 100.0, 3.0)]),
+        Change::Planes(Vec::new()),
+        Change::Force(399, Vec3::new(300.0, 100.0, 0.0)),
+    ] {
+        let what = format!("{change:?}");
+        run.change(change).expect("allowed");
+        stays_calm(&mut run, 100, &what);
+    }
+}

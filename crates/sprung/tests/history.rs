@@ -1,0 +1,202 @@
+//! Rewind, branch, reset, save and continue: always the same bits.
+
+mod common;
+
+use common::{scenes, steps};
+use sprung::{Change, ContactLaw, Event, Grab, Plane, SettleOptions, Simulation, Vec3};
+
+/// One of every kind of change, for a scene with at least 15 points and 14 springs.
+fn every_change() -> Vec<Change> {
+    let plane = Plane { law: ContactLaw::Push, ..Plane::level(5.0, 60.0, 4.0) };
+    vec![
+        Change::Gravity(Vec3::new(0.5, -3.0, 1.0)),
+        Change::Dt(0.007),
+        Change::Substeps(3),
+        Change::Planes(vec![plane]),
+        Change::Mass(3..6, 1.7),
+        Change::Pin(8..10, true),
+        Change::Stiffness(0..7, 150.0),
+        Change::Damping(5..9, 1.0),
+        Change::RestScale(2..12, 0.9),
+        Change::Cut(11..12, true),
+        Change::Force(4, Vec3::new(0.0, 20.0, -3.0)),
+        Change::Grab(Grab { point: 12, target: Vec3::new(20.0, 30.0, 4.0), stiffness: 90.0, damping: 2.0 }),
+        Change::Pin(8..10, false),
+        Change::Cut(11..12, false),
+        Change::Release(12),
+        Change::Mass(0..1, 2.0),
+        Change::Force(4, Vec3::ZERO),
+        Change::Dt(0.01),
+    ]
+}
+
+/// A chain to which everything is done; the hashes on arriving at each step and after what was done there.
+fn eventful(bytes: usize) -> (Simulation, Vec<u64>) {
+    let mut run = scenes::engine(&scenes::chain());
+    run.keep_history(bytes);
+    let mut arrived = vec![run.state_hash()];
+    let mut go = |run: &mut Simulation, count: u64| {
+        for _ in 0..count {
+            steps(run, 1);
+            arrived.push(run.state_hash());
+        }
+    };
+    for (index, change) in every_change().into_iter().enumerate() {
+        go(&mut run, 9);
+        run.change(change).expect("allowed");
+        if index == 5 {
+            run.settle(SettleOptions { residual_force: Some(0.5), ..SettleOptions::default() })
+                .expect("it settles");
+            run.change(Change::Pin(8..9, false)).expect("allowed");
+        }
+    }
+    go(&mut run, 150);
+    (run, arrived)
+}
+
+/// Where a step has events, rewinding shows the state after them; the hashes were taken on arrival.
+fn hash_after_events(run: &Simulation, arrived: &[u64], step: usize) -> Option<u64> {
+    let touched = run.log().iter().any(|(at, event)| {
+        let moves = matches!(event, Event::Settle(_) | Event::Change(Change::Pin(..) | Change::Mass(..)));
+        *at == step as u64 && moves
+    });
+    (!touched).then(|| arrived[step])
+}
+
+#[test]
+fn rewinding_to_any_step_gives_the_same_bits_whatever_was_done() {
+    // Nothing but the first state, room for two checkpoints, and as much as there is by default.
+    for bytes in [0, 2 * 15 * 48, 8 << 10, 64 << 20] {
+        let (mut run, arrived) = eventful(bytes);
+        let (end, params) = (run.state().clone(), run.params().clone());
+        let newest = run.state().step as usize;
+        // Back one by one, forth in strides, then criss-cross.
+        let backwards = (0..=newest).rev();
+        let forwards = (0..=newest).step_by(7);
+        let across = (0..40).map(|k| k * 7919 % (newest + 1));
+        for step in backwards.chain(forwards).chain(across) {
+            run.rewind_to(step as u64).expect("it is recorded");
+            assert_eq!(run.state().step, step as u64);
+            if let Some(expected) = hash_after_events(&run, &arrived, step) {
+                assert_eq!(run.state_hash(), expected, "step {step} with {bytes} bytes of history");
+            }
+        }
+        run.rewind_to(newest as u64).expect("it is recorded");
+        assert_eq!(run.state(), &end, "all of the state, time and ledger too");
+        assert_eq!(run.params(), &params);
+        assert!(run.rewind_to(newest as u64 + 1).is_err(), "what never was cannot be gone to");
+    }
+}
+
+#[test]
+fn every_kind_of_change_is_in_the_list() {
+    // A new kind must be added to the list above: this match then no longer compiles.
+    let kind = |change: &Change| match change {
+        Change::Dt(_) => 0,
+        Change::Substeps(_) => 1,
+        Change::Gravity(_) => 2,
+        Change::Planes(_) => 3,
+        Change::Mass(..) => 4,
+        Change::Pin(..) => 5,
+        Change::Stiffness(..) => 6,
+        Change::Damping(..) => 7,
+        Change::RestScale(..) => 8,
+        Change::Cut(..) => 9,
+        Change::Force(..) => 10,
+        Change::Grab(_) => 11,
+        Change::Release(_) => 12,
+    };
+    let mut seen = [false; 13];
+    every_change().iter().for_each(|change| seen[kind(change)] = true);
+    assert_eq!(seen, [true; 13]);
+}
+
+#[test]
+fn going_on_from_the_past_drops_the_future() {
+    let (mut run, arrived) = eventful(64 << 20);
+    run.rewind_to(100).expect("it is recorded");
+    let events = run.log().len();
+    // Looking around keeps the future …
+    run.rewind_to(200).expect("it is recorded");
+    assert_eq!(run.log().len(), events);
+    assert_eq!(run.state_hash(), arrived[200]);
+    // … doing something drops it.
+    run.rewind_to(100).expect("it is recorded");
+    run.change(Change::Gravity(Vec3::Y)).expect("allowed");
+    assert!(run.log().len() < events && run.log().iter().all(|(at, _)| *at <= 100));
+    assert!(run.rewind_to(101).is_err());
+    steps(&mut run, 30);
+    let branch = run.state().clone();
+    assert_ne!(run.state_hash(), arrived[130]);
+    run.rewind_to(40).expect("it is recorded");
+    assert_eq!(run.state_hash(), arrived[40]);
+    run.rewind_to(130).expect("it is recorded");
+    assert_eq!(run.state(), &branch);
+}
+
+#[test]
+fn the_log_repeats_a_run_on_a_fresh_simulation() {
+    let (run, _) = eventful(64 << 20);
+    let mut again = scenes::engine(&scenes::chain());
+    let mut log = run.log().iter().peekable();
+    loop {
+        while let Some((_, event)) = log.next_if(|(at, _)| *at == again.state().step) {
+            match event {
+                Event::Change(change) => again.change(change.clone()).expect("allowed before"),
+                Event::Settle(options) => drop(again.settle(*options).expect("it settled before")),
+            }
+        }
+        if again.state().step == run.state().step {
+            break;
+        }
+        steps(&mut again, 1);
+    }
+    assert_eq!(again.state(), run.state());
+}
+
+#[test]
+fn keeping_history_anew_starts_the_run_here() {
+    let (mut run, _) = eventful(64 << 20);
+    let (here, params) = (run.state().clone(), run.params().clone());
+    run.keep_history(1 << 20);
+    assert!(run.log().is_empty());
+    steps(&mut run, 20);
+    assert!(run.rewind_to(here.step - 1).is_err());
+    run.rewind_to(here.step).expect("the first step of this history");
+    assert_eq!((run.state(), run.params()), (&here, &params));
+    steps(&mut run, 3);
+    run.reset();
+    assert_eq!((run.state(), run.params()), (&here, &params));
+}
+
+#[test]
+fn a_saved_state_goes_on_as_if_it_had_never_stopped() {
+    for scene in scenes::four() {
+        let mut run = scenes::engine(&scene);
+        run.keep_ledger(true);
+        steps(&mut run, 33);
+        run.change(Change::Dt(0.007)).expect("allowed");
+        run.change(Change::Gravity(Vec3::new(0.0, -5.0, 1.0))).expect("allowed");
+        steps(&mut run, 40);
+        let mut saved = Simulation::new(run.model().clone(), run.params().clone(), run.state().clone())
+            .expect("they fit");
+        saved.keep_ledger(true);
+        assert_eq!(saved.state(), run.state(), "{}", scene.name);
+        steps(&mut run, 50);
+        steps(&mut saved, 50);
+        assert_eq!(saved.state(), run.state(), "{}: time and ledger too", scene.name);
+    }
+}
+
+#[test]
+fn a_settled_state_that_was_saved_does_not_look_like_a_blow_up() {
+    // Settling books the energy it takes out as work of negative sign: a new simulation that kept that, but began its
+    // books anew, would see all of it as energy from nowhere.
+    let mut run = scenes::engine(&scenes::cloth());
+    steps(&mut run, 40);
+    run.settle(SettleOptions { residual_force: Some(0.05), ..SettleOptions::default() }).expect("it settles");
+    let mut saved =
+        Simulation::new(run.model().clone(), run.params().clone(), run.state().clone()).expect("they fit");
+    assert!(!saved.is_suspect());
+    steps(&mut saved, 100);
+}
