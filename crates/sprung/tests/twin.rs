@@ -3,7 +3,7 @@
 mod common;
 
 use common::twin::{Ground, Point, Spring, Twin, norm, sub};
-use common::{U, network, scenes};
+use common::{U, network, rounding, scenes};
 use proptest::prelude::*;
 use sprung::{ContactLaw, Inline, Model, Params, Plane, State, Vec3, solver::SymplecticEuler};
 
@@ -68,7 +68,7 @@ fn reset_is_bit_for_bit() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(common::cases(400))]
 
     #[test]
     fn one_step_from_any_state_agrees_within_rounding(network in network(), grounded in any::<bool>()) {
@@ -77,7 +77,7 @@ proptest! {
             params.planes.push(Plane { law: ContactLaw::Report, ..Plane::level(-2.0, 50.0, 10.0) });
         }
         let mut twin = twin_of(&model, &params, &state);
-        let tolerances = rounding_of_one_step(&twin, &params);
+        let tolerances = rounding::of_step(&model, &params, &state);
         let mut after = state.clone();
         SymplecticEuler::new(&model, &params).step(&params, &mut after, &Inline);
         twin.step(params.dt);
@@ -116,62 +116,4 @@ fn twin_of(model: &Model, params: &Params, state: &State) -> Twin {
         ground,
         g: -f64::from(params.gravity.y),
     }
-}
-
-/// How far position (m) and velocity (m/s) of each point may be off after one step: the rounding, operation by
-/// operation, with u = 2⁻²⁴.
-///
-/// A spring of length ℓ between points no further than r from the origin:
-/// - its axis e is that of the *rounded* positions, off by δ = 2u·r (half an ulp at each end), and by u·ℓ more;
-/// - ℓ is a sum of squares and a root: 3u·ℓ besides δ. So the stretch is off by δ + 5u·ℓ + u|ℓ − L|;
-/// - u = e·(1/ℓ) turns by 2δ/ℓ and is rounded thrice more: 2δ/ℓ + 6u;
-/// - relative speed w·u: 2δ/ℓ + 10u of |w|;
-/// - both enter the tension T, which is then multiplied by u: T·(2δ/ℓ + 8u) more.
-///
-/// The n forces on a point are added up: n·u·ΣF. Divided by m and multiplied by dt: 4u of the result, 1e-20 where a speed
-/// counts as zero. x moves by dt times the *rounded* velocity, u·v, and is rounded twice: dt·(δv + 3u·v).
-fn rounding_of_one_step(twin: &Twin, params: &Params) -> Vec<[f64; 2]> {
-    let mut allowed = vec![0.0; twin.points.len()]; // of the force on each point, N
-    let mut total = vec![0.0; twin.points.len()];
-    let mut count = vec![4.0; twin.points.len()]; // gravity, plane and their products
-    for spring in &twin.springs {
-        let (a, b) = (&twin.points[spring.i], &twin.points[spring.j]);
-        let length = norm(sub(a.x, b.x));
-        if length == 0.0 {
-            continue;
-        }
-        let speed = norm(sub(a.v, b.v));
-        let delta = 2.0 * U * norm(a.x).max(norm(b.x));
-        let turn = 2.0 * delta / length;
-        let stretch = (length - spring.rest).abs();
-        let tension = spring.ks * stretch + spring.kd * speed;
-        let off = spring.ks * (delta + 5.0 * U * length + U * stretch)
-            + spring.kd * speed * (turn + 10.0 * U)
-            + tension * (turn + 8.0 * U);
-        for point in [spring.i, spring.j] {
-            allowed[point] += off;
-            total[point] += tension;
-            count[point] += 1.0;
-        }
-    }
-    let dt = params.dt;
-    let of_point = |(at, p): (usize, &Point)| {
-        let mut force = total[at] + p.m * twin.g;
-        let mut off = allowed[at];
-        if let Some(ground) = &twin.ground {
-            let depth = ground.y - p.x[1];
-            let edge = 2.0 * U * (p.x[1].abs() + ground.y.abs());
-            // At the very edge one may touch and the other not yet: then the damper's force is the difference.
-            let jump = if depth.abs() <= edge { ground.kcd * p.v[1].abs() } else { 0.0 };
-            force += ground.kc * depth.max(0.0) + ground.kcd * p.v[1].abs();
-            off += ground.kc * edge + jump;
-        }
-        if p.m == 0.0 {
-            return [0.0, 0.0];
-        }
-        let dv = (off + (count[at] + 4.0) * U * force) * dt / p.m + 1e-20;
-        let speed = norm(p.v) + force * dt / p.m;
-        [dt * (dv + 3.0 * U * speed), dv]
-    };
-    twin.points.iter().enumerate().map(of_point).collect()
 }
