@@ -22,9 +22,14 @@ pub struct Cli {
 impl Cli {
     /// The whole definition, with the formats of the one list of exporters in the help.
     pub fn definition() -> clap::Command {
-        let formats: Vec<String> =
-            EXPORTERS.iter().map(|exporter| format!(".{} ({})", exporter.ending, exporter.description)).collect();
-        let help = format!("A file to write, in the format of its ending: {}. May be given several times", formats.join(", "));
+        let formats: Vec<String> = EXPORTERS
+            .iter()
+            .map(|exporter| format!(".{} ({})", exporter.ending, exporter.description))
+            .collect();
+        let help = format!(
+            "A file to write, in the format of its ending: {}. May be given several times",
+            formats.join(", ")
+        );
         Self::command().mut_subcommand("run", |run| run.mut_arg("output", |output| output.help(help)))
     }
 }

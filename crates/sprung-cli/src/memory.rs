@@ -16,7 +16,8 @@ pub fn check(needed: u64, what: &str) -> Result<()> {
     if available == 0 || needed <= available {
         return Ok(());
     }
-    let sentence = format!("{what} needs about {} of memory, and {} are available", bytes(needed), bytes(available));
+    let sentence =
+        format!("{what} needs about {} of memory, and {} are available", bytes(needed), bytes(available));
     Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or a smaller radius"))
 }
 

@@ -64,6 +64,7 @@ pub fn workers(threads: usize) -> Result<Arc<dyn Workers>> {
         return Ok(Arc::new(Inline));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Error::new(Code::Unsupported, format!("cannot start {threads} threads: {error}")))?;
+    let pool = pool
+        .map_err(|error| Error::new(Code::Unsupported, format!("cannot start {threads} threads: {error}")))?;
     Ok(Arc::new(pool))
 }

@@ -8,7 +8,8 @@ use tempfile::TempDir;
 
 /// Runs, expects status 2 and one line (and a pointer to the help where the arguments were at fault), and gives it.
 fn complaint(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_sprung")).current_dir(folder).args(arguments).output().unwrap();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_sprung")).current_dir(folder).args(arguments).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
     assert!(output.stdout.is_empty(), "{arguments:?} printed to standard output");
@@ -37,8 +38,14 @@ fn bad_scene_files() {
         (&format!("substep = 3\n{BODY}"), &["bad.toml:1:1:", "substep", "did you mean \"substeps\"?"]),
         (&format!("{BODY}pins = [0, 0]\n"), &["bad.toml:5:", "pins"]),
         (&format!("{BODY}pins = [7]\n"), &["bad.toml:5:", "pins", "7"]),
-        ("[[body]]\nname = \"a\"\npoints = [[0, 0, 0]]\npoint_mass = -1\n", &["bad.toml:4:14:", "point_mass", "-1"]),
-        (&format!("{BODY}[[body.springs]]\nradius = 1\nstiffness = -5\ndamping = 0\n"), &["bad.toml:7:", "stiffness", "-5"]),
+        (
+            "[[body]]\nname = \"a\"\npoints = [[0, 0, 0]]\npoint_mass = -1\n",
+            &["bad.toml:4:14:", "point_mass", "-1"],
+        ),
+        (
+            &format!("{BODY}[[body.springs]]\nradius = 1\nstiffness = -5\ndamping = 0\n"),
+            &["bad.toml:7:", "stiffness", "-5"],
+        ),
         (&format!("{BODY}[[body.springs]]\nradius = 1\n"), &["bad.toml:5:", "stiffness"]),
     ];
     for (text, parts) in cases {
@@ -58,7 +65,10 @@ fn scenes_that_would_be_too_large() {
                 [[body.springs]]\nradius = 9\nstiffness = 1\n";
     std::fs::write(folder.path().join("dense.toml"), text).unwrap();
     let line = complaint(folder.path(), &["show", "dense.toml"]);
-    assert!(line.starts_with("dense.toml:6:") && line.contains("20000000") && line.contains("max_springs"), "{line}");
+    assert!(
+        line.starts_with("dense.toml:6:") && line.contains("20000000") && line.contains("max_springs"),
+        "{line}"
+    );
     let text = "[[body]]\nname = \"a\"\nlattice = { points = [4000000000, 4000000000, 4000000000], spacing = 1 }\npoint_mass = 1\n";
     std::fs::write(folder.path().join("huge.toml"), text).unwrap();
     let line = complaint(folder.path(), &["show", "huge.toml"]);
@@ -70,14 +80,20 @@ fn files_that_cannot_be_read() {
     let folder = TempDir::new().unwrap();
     assert_eq!(complaint(folder.path(), &["run", "none.toml"]), "none.toml: there is no such file");
     std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
-    assert_eq!(complaint(folder.path(), &["run", "folder.toml"]), "folder.toml: is a folder, and must be a file");
+    assert_eq!(
+        complaint(folder.path(), &["run", "folder.toml"]),
+        "folder.toml: is a folder, and must be a file"
+    );
     std::fs::write(folder.path().join("binary.toml"), b"dt = 1\nname = \"\xff\"\n").unwrap();
     let line = complaint(folder.path(), &["run", "binary.toml"]);
     assert!(line.starts_with("binary.toml:2:9:") && line.contains("UTF-8"), "{line}");
     // Two thousand million bytes without taking them from the disk.
     let large = std::fs::File::create(folder.path().join("large.toml")).unwrap();
     large.set_len(2_000_000_000).unwrap();
-    assert_eq!(complaint(folder.path(), &["run", "large.toml"]), "large.toml: is larger than the 64 MiB allowed");
+    assert_eq!(
+        complaint(folder.path(), &["run", "large.toml"]),
+        "large.toml: is larger than the 64 MiB allowed"
+    );
 }
 
 #[test]
@@ -122,7 +138,10 @@ fn bad_arguments() {
     for (arguments, parts) in cases {
         let line = complaint(folder.path(), arguments);
         for part in *parts {
-            assert!(line.to_lowercase().contains(&part.to_lowercase()), "{arguments:?}: {part:?} is not in: {line}");
+            assert!(
+                line.to_lowercase().contains(&part.to_lowercase()),
+                "{arguments:?}: {part:?} is not in: {line}"
+            );
         }
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

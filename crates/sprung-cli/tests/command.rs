@@ -44,7 +44,9 @@ fn frames(csv: &str) -> Vec<(u64, usize)> {
 #[test]
 fn every_scene_of_the_assignment_runs_to_a_table() {
     let folder = TempDir::new().unwrap();
-    for (scene, points, frame_time) in [("spring", 2, 0.07), ("chain", 15, 0.07), ("jelly", 1000, 0.11), ("cloth", 400, 0.07)] {
+    for (scene, points, frame_time) in
+        [("spring", 2, 0.07), ("chain", 15, 0.07), ("jelly", 1000, 0.11), ("cloth", 400, 0.07)]
+    {
         let file = format!("{scene}.csv");
         let output = sprung(folder.path(), &["run", scene, "-o", &file, "--frames", "3", "--quiet"]);
         assert!(output.status.success(), "{}", stderr(&output));
@@ -60,7 +62,8 @@ fn every_scene_of_the_assignment_runs_to_a_table() {
 #[test]
 fn several_outputs_cost_one_simulation_and_agree() {
     let folder = TempDir::new().unwrap();
-    let arguments = ["run", "chain", "-o", "a.csv", "-o", "b.csv", "-o", "c.npz", "-o", "d.png", "--size", "320x180"];
+    let arguments =
+        ["run", "chain", "-o", "a.csv", "-o", "b.csv", "-o", "c.npz", "-o", "d.png", "--size", "320x180"];
     let output = sprung(folder.path(), &[&arguments[..], &["--frames", "5", "--plot", "e.svg"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(names(folder.path()), ["a.csv", "b.csv", "c.npz", "d.png", "e.svg"]);
@@ -74,7 +77,10 @@ fn a_frame_rate_takes_the_largest_step_that_divides_a_frame_and_says_so() {
     let folder = TempDir::new().unwrap();
     // 1/24 s takes five steps of 1/120 s: four of dt = 0.01 s would be too short.
     let output = sprung(folder.path(), &["run", "spring", "-o", "a.csv", "--seconds", "1", "--fps", "24"]);
-    assert!(stderr(&output).contains("dt is 0.00833333 s instead of 0.01 s, so that 5 steps make a frame of 1/24 s."));
+    assert!(
+        stderr(&output)
+            .contains("dt is 0.00833333 s instead of 0.01 s, so that 5 steps make a frame of 1/24 s.")
+    );
     let csv = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
     assert_eq!(frames(&csv).len(), 25);
     let time: f64 = csv.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap();
@@ -97,7 +103,9 @@ fn show_answers_with_the_table_of_stability_limits() {
     for (scene, omega2, c, limit, mass) in table {
         let output = sprung(folder.path(), &["show", scene, "--json"]);
         let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-        for (key, expected) in [("omega2_max", omega2), ("c_max", c), ("dt_limit", limit), ("total_mass", mass)] {
+        for (key, expected) in
+            [("omega2_max", omega2), ("c_max", c), ("dt_limit", limit), ("total_mass", mass)]
+        {
             let found = answer[key].as_f64().unwrap();
             assert!((found / expected - 1.0).abs() < 1e-3, "{scene} {key}: {found}, and not {expected}");
         }
@@ -126,7 +134,8 @@ fn a_blow_up_is_caught_before_it_is_written() {
     for dt in ["0.013", "0.0121"] {
         let folder = TempDir::new().unwrap();
         let set = format!("dt={dt}");
-        let output = sprung(folder.path(), &["run", "jelly", "--set", &set, "-o", "a.csv", "--seconds", "20"]);
+        let output =
+            sprung(folder.path(), &["run", "jelly", "--set", &set, "-o", "a.csv", "--seconds", "20"]);
         assert_eq!(output.status.code(), Some(3));
         let said = stderr(&output);
         assert!(said.contains("Warning: dt ="), "a warning comes before the run: {said}");
@@ -186,7 +195,8 @@ fn threads_change_nothing() {
     let folder = TempDir::new().unwrap();
     for threads in ["1", "2", "5"] {
         let file = format!("{threads}.csv");
-        let output = sprung(folder.path(), &["run", "jelly", "--threads", threads, "-o", &file, "--frames", "2"]);
+        let output =
+            sprung(folder.path(), &["run", "jelly", "--threads", threads, "-o", &file, "--frames", "2"]);
         assert!(output.status.success(), "{}", stderr(&output));
     }
     let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
@@ -231,7 +241,12 @@ fn bench_gives_one_object_per_scene() {
 
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_sprung")).arg("schema").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sprung"))
+        .arg("schema")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success() && output.stderr.is_empty(), "{}", stderr(&output));

@@ -117,8 +117,8 @@ impl Params {
 
     /// Whether a spring can move anything: not cut, and not between two fixed points.
     pub fn is_live(&self, model: &Model, spring: usize) -> bool {
-        let [i, j] = model.springs[spring];
-        !self.spring_cut[spring] && !(self.is_fixed(i as usize) && self.is_fixed(j as usize))
+        let an_end_is_free = model.springs[spring].iter().any(|&point| !self.is_fixed(point as usize));
+        an_end_is_free && !self.spring_cut[spring]
     }
 
     /// Checks every value against its range and every array against the model.

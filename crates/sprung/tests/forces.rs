@@ -80,9 +80,8 @@ proptest! {
             let allowed = allowed(force, &model, &params, &state);
             // A contact has no energy to give at a fixed point, which cannot move.
             for point in (0..model.point_count()).filter(|&point| !params.is_fixed(point)) {
-                for axis in 0..3 {
+                for (axis, found) in conservative[point].to_array().into_iter().enumerate() {
                     let expected = slope(force, &model, &params, &state, point, axis);
-                    let found = conservative[point][axis];
                     prop_assert!(
                         (found - expected).abs() <= allowed,
                         "{}: point {} axis {}: {} N, slope {} N, allowed {:e}", force.name, point, axis, found, expected, allowed

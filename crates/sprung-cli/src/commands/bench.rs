@@ -49,7 +49,15 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     if !args.json {
         say(format_args!(
             "{:<12} {:>9} {:>10} {:>8} {:>8} {:>14} {:>12} {:>9} {:>9}",
-            "scene", "points", "springs", "steps", "threads", "ns/spring/step", "steps/s", "set-up s", "peak MB"
+            "scene",
+            "points",
+            "springs",
+            "steps",
+            "threads",
+            "ns/spring/step",
+            "steps/s",
+            "set-up s",
+            "peak MB"
         ));
     }
     if let [scene] = scenes[..] {

@@ -19,6 +19,8 @@ pub fn run(args: &NewArgs) -> Result<()> {
     let mut file = PartialFile::create(path)?;
     file.write_all(scene::STARTER.as_bytes()).map_err(|error| write_error(path, &error))?;
     file.finish()?;
-    console::say(format_args!("Wrote {name}. Edit it, then try `sprung show {name}` and `sprung run {name} -o out.gif`."));
+    console::say(format_args!(
+        "Wrote {name}. Edit it, then try `sprung show {name}` and `sprung run {name} -o out.gif`."
+    ));
     Ok(())
 }

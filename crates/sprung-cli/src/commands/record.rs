@@ -32,7 +32,12 @@ pub struct Recorder {
 
 impl Recorder {
     /// Begins all files, before anything is simulated.
-    pub fn open(outputs: &[PathBuf], plot: Option<&PathBuf>, info: &RunInfo, options: &Options) -> Result<Self> {
+    pub fn open(
+        outputs: &[PathBuf],
+        plot: Option<&PathBuf>,
+        info: &RunInfo,
+        options: &Options,
+    ) -> Result<Self> {
         let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
         if let Some(path) = plot {
             plot::check(path)?;

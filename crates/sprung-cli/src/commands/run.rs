@@ -167,7 +167,10 @@ fn settle(args: &RunArgs, simulation: &mut Simulation, interrupt: &Interrupt) ->
     bar.finish_and_clear();
     if !args.quiet {
         let steps = counted(settled.steps, "step");
-        note(format_args!("Settled in {steps}; the largest force left is {} N.", rounded(settled.residual_force)));
+        note(format_args!(
+            "Settled in {steps}; the largest force left is {} N.",
+            rounded(settled.residual_force)
+        ));
     }
     Ok(())
 }
@@ -175,7 +178,8 @@ fn settle(args: &RunArgs, simulation: &mut Simulation, interrupt: &Interrupt) ->
 /// Says before the run that it will probably blow up. The sharp limit is only worth computing beyond the certified one.
 fn warn_of_large_dt(simulation: &Simulation) {
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
-    let Some(certified) = stability::certified(model, params, positions).filter(|limit| params.dt > limit.dt) else {
+    let Some(certified) = stability::certified(model, params, positions).filter(|limit| params.dt > limit.dt)
+    else {
         return;
     };
     let Some(limit) = stability::sharp(model, params, positions).dt else { return };
@@ -192,5 +196,8 @@ fn warn_of_large_dt(simulation: &Simulation) {
 }
 
 fn interrupted(frames: u64) -> Error {
-    Error::new(Code::Interrupted, format!("interrupted; the {} recorded until then are kept", counted(frames, "frame")))
+    Error::new(
+        Code::Interrupted,
+        format!("interrupted; the {} recorded until then are kept", counted(frames, "frame")),
+    )
 }

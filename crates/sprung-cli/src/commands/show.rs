@@ -91,7 +91,13 @@ pub fn run(args: &ShowArgs) -> Result<()> {
     Ok(())
 }
 
-fn print(simulation: &Simulation, energy: &Energy, sharp: &Sharp, certified: Option<&Limit>, every: Option<&Limit>) {
+fn print(
+    simulation: &Simulation,
+    energy: &Energy,
+    sharp: &Sharp,
+    certified: Option<&Limit>,
+    every: Option<&Limit>,
+) {
     let (model, params) = (simulation.model(), simulation.params());
     let row = |label: &str, text: String| say(format_args!("  {label:<20} {text}"));
     let fixed = fixed_points(simulation);
@@ -109,13 +115,22 @@ fn print(simulation: &Simulation, energy: &Energy, sharp: &Sharp, certified: Opt
         }
     }
     if let Some(limit) = certified {
-        row("  certified", format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)));
+        row(
+            "  certified",
+            format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)),
+        );
     }
     if let Some(limit) = every {
-        row("  in any shape", format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)));
+        row(
+            "  in any shape",
+            format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)),
+        );
     }
     if sharp.dt.is_some() {
-        row("fastest vibration", format!("ω² = {} 1/s², damping c = {} 1/s", rounded(sharp.omega2_max), rounded(sharp.c_max)));
+        row(
+            "fastest vibration",
+            format!("ω² = {} 1/s², damping c = {} 1/s", rounded(sharp.omega2_max), rounded(sharp.c_max)),
+        );
     }
     row("state hash", format!("{:016x}", simulation.state_hash()));
 }
@@ -138,7 +153,11 @@ pub fn describe(simulation: &Simulation, setter: Setter) -> String {
 /// Six significant digits.
 pub fn rounded(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-4..1e9).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+    if rounded != 0.0 && !(1e-4..1e9).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
 }
 
 fn fixed_points(simulation: &Simulation) -> usize {
@@ -148,5 +167,8 @@ fn fixed_points(simulation: &Simulation) -> usize {
 /// Of the points that can move, kg: a fixed point has no mass as far as the motion goes.
 fn total_mass(simulation: &Simulation) -> f64 {
     let (params, points) = (simulation.params(), simulation.model().point_count());
-    (0..points).filter(|&point| !params.is_fixed(point)).map(|point| f64::from(params.point_mass[point])).sum()
+    (0..points)
+        .filter(|&point| !params.is_fixed(point))
+        .map(|point| f64::from(params.point_mass[point]))
+        .sum()
 }
