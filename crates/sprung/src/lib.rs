@@ -35,3 +35,8 @@ pub use simulation::Simulation;
 pub use state::{Snapshot, State};
 pub use watch::{BlowUp, Cause};
 pub use workers::{Inline, Workers};
+
+/// The README's example is one of the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
