@@ -35,6 +35,7 @@ const STAGES: &[Stage] = &[
         run: stages::release_tests,
     },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
+    Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
     Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
     Stage {

@@ -38,8 +38,8 @@ pub struct Material {
 /// - A spring from a point to itself is refused. Its ends are otherwise put in order, the smaller index first.
 /// - *Repeated springs* all act, as springs side by side do: two of stiffness k pull like one of 2k.
 /// - A spring *between two fixed points* is kept, drawn and counted, and never moves anything.
-/// - *Coincident points* may be joined; their spring has rest length zero. While two points coincide (closer than
-///   10⁻¹⁵ m) their spring has no axis and exerts no force.
+/// - *Coincident points* may be joined; their spring has rest length zero. While two points coincide their spring has no
+///   axis and exerts no force; closer than 10⁻¹⁵ m its damper fades in, and it is never a NaN.
 /// - A spring of *rest length zero* always pulls its ends together.
 ///
 /// ```
