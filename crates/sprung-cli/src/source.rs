@@ -13,9 +13,6 @@ use crate::memory;
 /// Scene files larger than this are refused unread.
 const MAX_SCENE_BYTES: u64 = 64 << 20;
 
-/// Springs from which a scene is worth several threads: below it, handing work over costs more than it saves.
-const SPRINGS_FOR_THREADS: usize = 200_000;
-
 /// The scene with its changes, and the name to call it by.
 pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
     let (name, mut scene) = named(&args.scene)?;
@@ -44,18 +41,12 @@ fn named(text: &str) -> Result<(String, Scene)> {
 }
 
 /// The simulation of a scene, without a history, after asking whether there is memory for it.
-pub fn simulation(scene: &Scene, threads: Option<usize>) -> Result<Simulation> {
+pub fn simulation(scene: &Scene, threads: usize) -> Result<Simulation> {
     memory::check(scene.estimated_bytes(), "the scene")?;
     let mut simulation = scene.simulation()?;
     simulation.keep_history(0);
-    simulation.set_workers(workers(thread_count(threads, simulation.model().spring_count()))?);
+    simulation.set_workers(workers(threads)?);
     Ok(simulation)
-}
-
-/// As many threads as asked for; otherwise one for a small scene and all cores for a large one.
-pub fn thread_count(threads: Option<usize>, springs: usize) -> usize {
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    threads.unwrap_or_else(|| if springs < SPRINGS_FOR_THREADS { 1 } else { cores() })
 }
 
 /// Worker threads to lend to the engine.

@@ -25,7 +25,7 @@ fn growth(model: &Model, params: &Params, rest: &State, shape: &[Vec3], dt: f64,
     size(&state) / start
 }
 
-/// dt < 4/(c + √(c² + 4ω²)) for one oscillator: physics.md §6.
+/// dt < 4/(c + √(c² + 4ω²)) for one oscillator: docs/method.md.
 #[test]
 fn one_oscillator_decays_below_the_limit_and_grows_above_it() {
     for (mass, stiffness, damping) in
@@ -94,7 +94,7 @@ fn networks_decay_below_the_limit_of_a_dense_solve_and_grow_above_it() {
         let (k, c) = matrices(&model, &params, &state);
         let (limit, mode) = dense_limit(&k, &c);
         if name == "chain" {
-            assert!((limit / 0.0576921 - 1.0).abs() < 1e-5, "physics.md §6 has 0.0576921 s, here {limit}");
+            assert!((limit / 0.0576921 - 1.0).abs() < 1e-5, "a dense solve gives 0.0576921 s, here {limit}");
         }
         // The mode as a displacement of a tenth of a millimetre: linear, and far above the rounding of positions.
         let shape: Vec<Vec3> = (0..model.point_count())

@@ -71,19 +71,16 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     Ok(())
 }
 
-fn measure_apart(scene: &str, threads: Option<usize>) -> Result<Figures> {
+fn measure_apart(scene: &str, threads: usize) -> Result<Figures> {
     let failed = |reason: String| Error::new(Code::Unsupported, format!("cannot measure {scene}: {reason}"));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut command = Command::new(program);
-    command.args(["bench", scene, "--json"]);
-    if let Some(threads) = threads {
-        command.arg(format!("--threads={threads}"));
-    }
+    command.args(["bench", scene, "--json", &format!("--threads={threads}")]);
     let output = command.stderr(Stdio::inherit()).output().map_err(|error| failed(error.to_string()))?;
     serde_json::from_slice(&output.stdout).map_err(|_| failed(format!("it ended with {}", output.status)))
 }
 
-fn measure(scene: &str, threads: Option<usize>) -> Result<Figures> {
+fn measure(scene: &str, threads: usize) -> Result<Figures> {
     let args = SceneArgs { scene: scene.to_owned(), set: Vec::new() };
     let begun = Instant::now();
     let (name, scene) = source::scene(&args)?;
@@ -95,7 +92,6 @@ fn measure(scene: &str, threads: Option<usize>) -> Result<Figures> {
     add_noise(&mut state.velocity);
     let mut simulation = Simulation::new(model, params, state)?;
     simulation.keep_history(0);
-    let threads = source::thread_count(threads, springs);
     simulation.set_workers(source::workers(threads)?);
     simulation.step(dt)?;
     let setup_s = begun.elapsed().as_secs_f64();

@@ -19,7 +19,7 @@ pub fn run() -> Result<()> {
         plot: None,
         at: None,
         size: None,
-        threads: None,
+        threads: 1,
         quiet: false,
     })?;
     say("Try next:");

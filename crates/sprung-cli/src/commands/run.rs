@@ -17,8 +17,8 @@ use crate::source;
 /// Simulated time when nothing is said, s.
 const DEFAULT_SECONDS: f64 = 10.0;
 
-/// Pictures per second of a moving picture when nothing is said.
-const DEFAULT_FPS: f64 = 25.0;
+/// Frames further apart than this make a film that visibly jumps, s.
+const SMOOTH: f64 = 1.0 / 15.0;
 
 /// A dt above this share of the sharp limit is warned of: the limit is computed from below.
 const WARNING_SHARE: f64 = 0.95;
@@ -83,14 +83,13 @@ struct Plan {
     frames: u64,
     /// The frame rate that dt was fitted to, and dt as it was.
     fitted: Option<(f64, f64)>,
+    /// A film of these frames will jump.
+    jumps: bool,
 }
 
 impl Plan {
     fn new(args: &RunArgs, params: &Params) -> Result<Self> {
-        let animated = |path: &std::path::PathBuf| path.extension().is_some_and(|e| e == "gif" || e == "mp4");
-        let plays = args.frames.is_none() && args.output.iter().any(animated);
-        let fps = args.fps.or(plays.then_some(DEFAULT_FPS));
-        let (dt, steps_per_frame) = match fps {
+        let (dt, steps_per_frame) = match args.fps {
             // The largest step not above dt that divides a frame; a quotient that is whole up to rounding is whole.
             Some(fps) => {
                 let steps = (1.0 / (fps * params.dt) - 1e-9).ceil().max(1.0);
@@ -104,8 +103,10 @@ impl Plan {
             let sentence = format!("would make {frames:.0} frames, and at most {MAX_FRAMES:.0} are allowed");
             return Err(Error::new(Code::TooLarge, sentence).in_file("--seconds"));
         }
-        let fitted = fps.filter(|_| dt != params.dt).map(|fps| (fps, params.dt));
-        Ok(Self { dt, steps_per_frame, frames: args.frames.unwrap_or(frames as u64), fitted })
+        let fitted = args.fps.filter(|_| dt != params.dt).map(|fps| (fps, params.dt));
+        let film = args.output.iter().any(|path| path.extension().is_some_and(|e| e == "gif" || e == "mp4"));
+        let jumps = film && args.fps.is_none() && frame_time > SMOOTH;
+        Ok(Self { dt, steps_per_frame, frames: args.frames.unwrap_or(frames as u64), fitted, jumps })
     }
 
     fn announce(&self) {
@@ -117,6 +118,10 @@ impl Plan {
                 rounded(dt),
                 rounded(fps)
             ));
+        }
+        if self.jumps {
+            let frame_time = rounded(self.dt * self.steps_per_frame as f64);
+            note(format_args!("Frames are {frame_time} s apart; --fps 25 makes a smoother film."));
         }
     }
 }

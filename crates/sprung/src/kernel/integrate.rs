@@ -20,7 +20,7 @@ pub(crate) struct Motion<'a> {
     pub velocity_low: &'a mut [f32],
 }
 
-/// One semi-implicit Euler move with the accelerations `a` (m/s²) and step `dt` (s): physics.md calls it stage 3.
+/// One semi-implicit Euler move with the accelerations `a` (m/s²) and step `dt` (s).
 /// A fixed point has a = 0 and v = 0 and stays. Returns whether every position is finite.
 ///
 /// Plain slices and no branch, so that the compiler makes vector code of it.

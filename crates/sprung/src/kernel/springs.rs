@@ -61,12 +61,19 @@ impl Lanes {
         Self { axis: zeros, velocity: zeros, force: zeros }
     }
 
-    /// Puts e = x_i − x_j and w = v_i − v_j into a lane.
+    /// Fills the first lanes with e = x_i − x_j and w = v_i − v_j of some springs.
     #[inline(always)]
-    fn set(&mut self, lane: usize, e: Vec3, w: Vec3) {
-        for (component, (e, w)) in e.to_array().into_iter().zip(w.to_array()).enumerate() {
-            self.axis[component][lane] = e;
-            self.velocity[component][lane] = w;
+    fn fetch(&mut self, ends: &[[u32; 2]], position: &[Vec3], velocity: &[Vec3]) {
+        let [ex, ey, ez] = &mut self.axis;
+        let [wx, wy, wz] = &mut self.velocity;
+        // Said once, so that it need not be checked for every lane.
+        assert!(ends.len() <= LANES);
+        for (lane, &[i, j]) in ends.iter().enumerate() {
+            let (i, j) = (i as usize, j as usize);
+            let e = position[i] - position[j];
+            let w = velocity[i] - velocity[j];
+            (ex[lane], ey[lane], ez[lane]) = (e.x, e.y, e.z);
+            (wx[lane], wy[lane], wz[lane]) = (w.x, w.y, w.z);
         }
     }
 
@@ -149,23 +156,12 @@ impl SpringKernel {
     fn scatter(&self, position: &[Vec3], velocity: &[Vec3], forces: &mut [Vec3]) {
         let mut lanes = Lanes::new();
         for (chunk, ends) in self.ends.chunks(LANES).enumerate() {
-            for (lane, &[i, j]) in ends.iter().enumerate() {
-                let (i, j) = (i as usize, j as usize);
-                lanes.set(lane, position[i] - position[j], velocity[i] - velocity[j]);
-            }
+            lanes.fetch(ends, position, velocity);
             lanes.compute(&self.laws, chunk * LANES);
-            // Springs that share their first point stand together; its sum stays in registers meanwhile.
-            let mut lane = 0;
-            for run in ends.chunk_by(|a, b| a[0] == b[0]) {
-                let i = run[0][0] as usize;
-                let mut sum = forces[i];
-                for &[_, j] in run {
-                    let force = lanes.force(lane);
-                    sum += force;
-                    forces[j as usize] -= force;
-                    lane += 1;
-                }
-                forces[i] = sum;
+            for (lane, &[i, j]) in ends.iter().enumerate() {
+                let force = lanes.force(lane);
+                forces[i as usize] += force;
+                forces[j as usize] -= force;
             }
         }
     }
@@ -246,10 +242,7 @@ impl Gather {
         for begin in halves.clone().step_by(LANES) {
             let end = halves.end.min(begin + LANES);
             let ends = &self.ends[begin..end];
-            for (lane, &[i, j]) in ends.iter().enumerate() {
-                let (i, j) = (i as usize, j as usize);
-                lanes.set(lane, position[i] - position[j], velocity[i] - velocity[j]);
-            }
+            lanes.fetch(ends, position, velocity);
             lanes.compute(&self.laws, begin);
             for (lane, &[i, _]) in ends.iter().enumerate() {
                 sums[i as usize - first] += lanes.force(lane);

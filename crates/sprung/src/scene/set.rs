@@ -62,6 +62,7 @@ impl Scene {
                 steps.insert(steps.len() - 1, "springs");
                 put_in_table(&mut table, &steps, &value, "", &mut fields)?;
             }
+            [key] if !keys_of::<Self>().contains(&key) => return Err(unknown_key(key)),
             _ => put_in_table(&mut table, &steps, &value, "", &mut fields)?,
         }
         if fields.is_empty() {
@@ -75,6 +76,18 @@ impl Scene {
         check(&scene, MAX_POINTS)?;
         scene.origin = self.origin.with_overrides(&fields, argument);
         Ok(scene)
+    }
+}
+
+/// What may stand alone: the scene's own keys and the shorthands.
+fn unknown_key(key: &str) -> Error {
+    let allowed = [keys_of::<Scene>(), &SHORTHANDS].concat();
+    let error =
+        Error::new(Code::UnknownKey, format!("is not a known key; allowed here are {}", allowed.join(", ")));
+    let error = error.at_field(one_line(&shortened(key)));
+    match did_you_mean(key, allowed.iter().copied()) {
+        Some(fix) => error.with_fix(fix),
+        None => error,
     }
 }
 

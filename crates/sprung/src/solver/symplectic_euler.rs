@@ -34,7 +34,7 @@ impl SymplecticEuler {
 
     /// Takes one step. Returns whether every position is still finite; if not, the state is of no use any more.
     ///
-    /// Forces add up in this order: springs (see [`kernel`](crate::kernel)), external forces, grabs, gravity, planes.
+    /// Forces add up in this order: springs (each point's in ascending order of their index), external forces, grabs, gravity, planes.
     pub fn step(&mut self, params: &Params, state: &mut State, workers: &dyn Workers) -> bool {
         // 1. and 2. Forces on every point.
         self.accumulate(params, state, workers);

@@ -1,4 +1,4 @@
-//! The four scenes of physics.md §4, written out for the twin, with how many springs each has.
+//! The four scenes of docs/method.md, written out for the twin, with how many springs each has.
 
 use super::twin::{Ground, Twin, V3, add, dot, scale};
 

@@ -1,4 +1,4 @@
-//! The naive twin: physics.md §1–3 in float64, with the report's own loops. It shares no code with the engine.
+//! The naive twin: the method of docs/method.md in float64, with the report's own loops. It shares no code with the engine.
 
 /// A vector, written out.
 pub type V3 = [f64; 3];
