@@ -1164,7 +1164,7 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "UnknownKey",
         "dtt",
         "1",
-        r#"--set dtt=1: dtt: is not a known key; allowed here are title, description, dt, substeps, gravity, max_springs, plane, body, joint; did you mean "dt"?"#,
+        r#"--set dtt=1: dtt: is not a known key; allowed here are title, description, dt, substeps, gravity, max_springs, plane, body, joint, stiffness, damping, rest_scale; did you mean "dt"?"#,
     ),
     (
         "WrongType",
