@@ -2,15 +2,33 @@
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Mutex;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use sprung::Error;
+use sprung_io::files::write_error;
 
-/// Writes a line to standard output. A reader that has gone away, as `head` does, is no error.
+/// Why standard output could not be written, once it could not.
+static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Writes a line to standard output. A reader that has gone away, as `head` does, is no error; anything else is told by
+/// [`lost`] at the end.
 pub fn say(line: impl Display) {
-    let _ = writeln!(io::stdout(), "{line}");
+    if let Err(error) = writeln!(io::stdout(), "{line}")
+        && error.kind() != io::ErrorKind::BrokenPipe
+        && let Ok(mut lost) = LOST.lock()
+    {
+        lost.get_or_insert(error);
+    }
+}
+
+/// The error of a standard output that lost something that was said.
+pub fn lost() -> Option<Error> {
+    let error = LOST.lock().ok()?.take()?;
+    Some(write_error(Path::new("standard output"), &error))
 }
 
 /// Writes a line to standard error.

@@ -22,7 +22,7 @@ pub fn main_with<A: Into<OsString> + Clone>(args: impl IntoIterator<Item = A>) -
         Ok(cli) => cli,
         Err(error) => return console::usage(&error),
     };
-    match commands::run(cli) {
+    match commands::run(cli).and_then(|()| console::lost().map_or(Ok(()), Err)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             console::complain(&error);

@@ -13,6 +13,7 @@ pub fn check(needed: u64, what: &str) -> Result<()> {
     let refresh = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     // Where the system does not tell, nothing is refused.
     let available = System::new_with_specifics(refresh).map_or(0, |system| system.available_memory());
+    let available = limit().map_or(available, |limit| limit.min(available));
     if available == 0 || needed <= available {
         return Ok(());
     }
@@ -21,10 +22,24 @@ pub fn check(needed: u64, what: &str) -> Result<()> {
     Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or a smaller radius"))
 }
 
+/// What this process may still take of its address space, bytes, where there is such a limit and the system tells
+/// (`ulimit -v`, Linux).
+fn limit() -> Option<u64> {
+    let limits = std::fs::read_to_string("/proc/self/limits").ok()?;
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(limit.saturating_sub(status("VmSize:")?))
+}
+
 /// The most memory this process has held so far, bytes, where the system tells (Linux).
 pub fn peak() -> Option<u64> {
+    status("VmHWM:")
+}
+
+/// A figure of `/proc/self/status`, bytes.
+fn status(name: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix(name))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes * 1024)
 }

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::force::{self, Account, FORCES};
+use crate::force::{self, Account, FORCES, Store};
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -24,6 +24,8 @@ pub struct LedgerSums {
     pub lost_in_contact: f64,
     /// Energy that the integrator made (positive) or lost (negative), while the ledger is on.
     pub integrator_error: f64,
+    /// Steps in a row in which energy came from nowhere; after 20 of them the run counts as blown up.
+    pub suspect_steps: u64,
 }
 
 /// Where the energy is at one moment, and where it went since the start, J.
@@ -50,10 +52,11 @@ impl Energy {
         let mut energy = Self { kinetic: kinetic(params, state), sums: state.ledger, ..Self::default() };
         for force in FORCES {
             let potential = (force.potential)(model, params, state);
-            match force.name {
-                "gravity" => energy.gravitational += potential,
-                "contact" => energy.contact += potential,
-                _ => energy.elastic += potential,
+            match force.store {
+                Store::Gravitational => energy.gravitational += potential,
+                Store::Elastic => energy.elastic += potential,
+                Store::Contact => energy.contact += potential,
+                Store::None => {}
             }
         }
         energy

@@ -1,5 +1,7 @@
 //! The run log and sparse checkpoints: exact rewind by replay.
 
+use std::sync::Arc;
+
 use crate::params::{Change, Params};
 use crate::settle::SettleOptions;
 use crate::state::State;
@@ -27,28 +29,29 @@ pub enum Event {
 /// A checkpoint at step s is the state on arriving there, before the events logged for s.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
-    first: (State, Params),
-    checkpoints: Vec<(State, Params)>,
+    first: Arc<Checkpoint>,
+    checkpoints: Vec<Checkpoint>,
+    /// In ascending order of the step.
     log: Vec<(u64, Event)>,
-    most: usize,
+    budget: usize,
     gap: u64,
     newest: u64,
 }
 
+/// A state to go on from, and the parameters then.
+#[derive(Clone, Debug)]
+pub(crate) struct Checkpoint {
+    pub state: State,
+    pub params: Arc<Params>,
+}
+
 impl History {
-    pub fn new(state: &State, params: &Params, bytes: usize) -> Self {
-        let size = 4 * size_of::<glam::Vec3>() * state.position.len();
-        Self {
-            first: (state.clone(), params.clone()),
-            checkpoints: Vec::new(),
-            log: Vec::new(),
-            most: (bytes / size.max(1)).min(MOST_CHECKPOINTS),
-            gap: FIRST_GAP,
-            newest: state.step,
-        }
+    pub fn new(first: Arc<Checkpoint>, bytes: usize) -> Self {
+        let newest = first.state.step;
+        Self { first, checkpoints: Vec::new(), log: Vec::new(), budget: bytes, gap: FIRST_GAP, newest }
     }
 
-    pub fn first(&self) -> &(State, Params) {
+    pub fn first(&self) -> &Arc<Checkpoint> {
         &self.first
     }
 
@@ -65,40 +68,73 @@ impl History {
     pub fn branch_at(&mut self, step: u64) {
         if step < self.newest {
             self.log.retain(|(at, _)| *at <= step);
-            self.checkpoints.retain(|(state, _)| state.step <= step);
+            self.checkpoints.retain(|checkpoint| checkpoint.state.step <= step);
             self.newest = step;
         }
     }
 
+    /// Notes what was done. Of a grab that is dragged along between two steps only the last place counts.
     pub fn record(&mut self, step: u64, event: Event) {
+        if let (Event::Change(Change::Grab(new)), Some((at, Event::Change(Change::Grab(old))))) =
+            (&event, self.log.last_mut())
+            && *at == step
+            && old.point == new.point
+        {
+            *old = *new;
+            return;
+        }
         self.log.push((step, event));
     }
 
     /// A step was taken.
-    pub fn arrived(&mut self, state: &State, params: &Params) {
+    pub fn arrived(&mut self, state: &State, params: &Arc<Params>) {
         self.newest = state.step;
-        if self.most == 0 || !(state.step - self.first.0.step).is_multiple_of(self.gap) {
+        let since = state.step - self.first.state.step;
+        if !since.is_multiple_of(self.gap) {
             return;
         }
-        if self.checkpoints.len() >= self.most {
+        let last = self.checkpoints.last().unwrap_or(&self.first);
+        let needed = size(state, params, &last.params);
+        if needed > self.budget {
+            return;
+        }
+        while self.bytes() + needed > self.budget || self.checkpoints.len() >= MOST_CHECKPOINTS {
             // Every other one, so that the rest lie twice as far apart.
             self.gap *= 2;
-            let (first, gap) = (self.first.0.step, self.gap);
-            self.checkpoints.retain(|(state, _)| (state.step - first).is_multiple_of(gap));
-            if !(state.step - first).is_multiple_of(gap) || self.checkpoints.len() >= self.most {
-                return;
-            }
+            let (first, gap) = (self.first.state.step, self.gap);
+            self.checkpoints.retain(|checkpoint| (checkpoint.state.step - first).is_multiple_of(gap));
         }
-        self.checkpoints.push((state.clone(), params.clone()));
+        if since.is_multiple_of(self.gap) {
+            self.checkpoints.push(Checkpoint { state: state.clone(), params: params.clone() });
+        }
     }
 
     /// The last checkpoint at or before `step`.
-    pub fn before(&self, step: u64) -> &(State, Params) {
-        self.checkpoints.iter().rev().find(|(state, _)| state.step <= step).unwrap_or(&self.first)
+    pub fn before(&self, step: u64) -> &Checkpoint {
+        self.checkpoints.iter().rev().find(|checkpoint| checkpoint.state.step <= step).unwrap_or(&self.first)
     }
 
     /// The events logged for `step`, in order.
     pub fn events_at(&self, step: u64) -> Vec<Event> {
-        self.log.iter().filter(|(at, _)| *at == step).map(|(_, event)| event.clone()).collect()
+        let begin = self.log.partition_point(|(at, _)| *at < step);
+        let end = self.log.partition_point(|(at, _)| *at <= step);
+        self.log[begin..end].iter().map(|(_, event)| event.clone()).collect()
     }
+
+    /// Memory of the checkpoints, bytes.
+    fn bytes(&self) -> usize {
+        let mut before = &self.first.params;
+        let mut bytes = 0;
+        for checkpoint in &self.checkpoints {
+            bytes += size(&checkpoint.state, &checkpoint.params, before);
+            before = &checkpoint.params;
+        }
+        bytes
+    }
+}
+
+/// Memory of a checkpoint, bytes: its state, and what its parameters do not share with those before.
+fn size(state: &State, params: &Arc<Params>, before: &Arc<Params>) -> usize {
+    let own = if Arc::ptr_eq(params, before) { 0 } else { params.bytes_apart_from(before) };
+    4 * size_of::<glam::Vec3>() * state.position.len() + own
 }

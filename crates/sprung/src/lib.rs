@@ -19,6 +19,7 @@ mod simulation;
 pub mod solver;
 pub mod stability;
 mod state;
+mod text;
 mod watch;
 mod workers;
 
@@ -33,6 +34,7 @@ pub use params::{Change, Grab, Params};
 pub use settle::{SettleOptions, Settled};
 pub use simulation::Simulation;
 pub use state::{Snapshot, State};
+pub use text::significant;
 pub use watch::{BlowUp, Cause};
 pub use workers::{Inline, Workers};
 

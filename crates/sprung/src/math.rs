@@ -3,10 +3,10 @@
 use glam::{DMat3, DVec3, Vec3};
 
 /// Squared length below which two points count as coincident, m²: there a spring has no axis.
-/// Above it no term of the step is a denormal number.
+/// Above it no square in a length is a denormal number.
 pub(crate) const COINCIDENT_SQUARED: f32 = 1e-30;
 
-/// x·y + y·y + z·z, summed from left to right.
+/// a.x·b.x + a.y·b.y + a.z·b.z, summed from left to right.
 #[inline(always)]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
     a.x * b.x + a.y * b.y + a.z * b.z

@@ -9,7 +9,7 @@ pub struct Body {
     pub name: String,
     /// Its points, as indices into the model's.
     pub points: Range<usize>,
-    /// The springs between its own points, as indices into the model's.
+    /// The springs that were added with it, as indices into the model's.
     pub springs: Range<usize>,
 }
 

@@ -121,6 +121,19 @@ impl Params {
         an_end_is_free && !self.spring_cut[spring]
     }
 
+    /// Memory of the long arrays that are not shared with `other`, bytes.
+    pub(crate) fn bytes_apart_from(&self, other: &Self) -> usize {
+        fn bytes<T>(mine: &Arc<Vec<T>>, theirs: &Arc<Vec<T>>) -> usize {
+            if Arc::ptr_eq(mine, theirs) { 0 } else { size_of::<T>() * mine.len() }
+        }
+        bytes(&self.point_mass, &other.point_mass)
+            + bytes(&self.point_pinned, &other.point_pinned)
+            + bytes(&self.spring_stiffness, &other.spring_stiffness)
+            + bytes(&self.spring_damping, &other.spring_damping)
+            + bytes(&self.spring_rest_length, &other.spring_rest_length)
+            + bytes(&self.spring_cut, &other.spring_cut)
+    }
+
     /// Checks every value against its range and every array against the model.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
-use crate::history::{DEFAULT_HISTORY_BYTES, Event, History};
+use crate::history::{Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
 use crate::model::Model;
 use crate::params::{Change, Params, check_vector};
 use crate::settle::{SettleOptions, Settled};
@@ -15,6 +15,9 @@ use crate::solver::SymplecticEuler;
 use crate::state::{Snapshot, State};
 use crate::watch::{self, Watch};
 use crate::workers::{Inline, Workers};
+
+/// Steps between two calls of the progress of settling.
+const STEPS_TO_PROGRESS: u64 = 64;
 
 /// Model, parameters, state and solver bundled: step, frame, settle, change a parameter, rewind, reset, snapshot.
 ///
@@ -33,11 +36,15 @@ use crate::workers::{Inline, Workers};
 #[derive(Clone)]
 pub struct Simulation {
     model: Arc<Model>,
-    params: Params,
+    params: Arc<Params>,
     state: State,
     solver: SymplecticEuler,
+    /// What the solver has packed is behind the parameters.
+    solver_is_stale: bool,
     workers: Arc<dyn Workers>,
     watch: Watch,
+    /// Where [`reset`](Self::reset) goes.
+    start: Arc<Checkpoint>,
     history: History,
     history_bytes: usize,
     drives: Drives,
@@ -46,10 +53,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Bundles a model, its parameters and a state to start from. Velocities of fixed points become zero.
-    ///
-    /// A state that was taken from another simulation goes on as it would have there, bit for bit, its ledger too; under
-    /// parameters that do not explain the energy it has, the ledger starts anew.
+    /// Begins a run: a model, its parameters and a state to start from. Velocities of fixed points become zero, and the
+    /// ledger starts here.
     ///
     /// # Errors
     /// [`Code::OutOfRange`] or [`Code::Conflict`] if a value is not allowed or the parts do not fit together.
@@ -58,16 +63,31 @@ impl Simulation {
         params.validate(&model)?;
         check_state(&model, &state)?;
         stop_fixed_points(&params, &mut state);
+        let start = Energy::of(&model, &params, &state).total();
+        state.ledger = LedgerSums { start, ..LedgerSums::default() };
+        Self::resume(model, params, state)
+    }
+
+    /// Goes on with a run from the parameters and the state that another simulation had: bit for bit as it would have gone
+    /// on there, its ledger and its watch over the energy too.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn resume(model: impl Into<Arc<Model>>, params: Params, mut state: State) -> Result<Self> {
+        let model = model.into();
+        params.validate(&model)?;
+        check_state(&model, &state)?;
+        stop_fixed_points(&params, &mut state);
         state.check_clock(params.dt);
-        if state.ledger == LedgerSums::default() || watch::excess(&model, &params, &state).is_some() {
-            let start = Energy::of(&model, &params, &state).total();
-            state.ledger = LedgerSums { start, ..LedgerSums::default() };
-        }
+        let params = Arc::new(params);
+        let start = Arc::new(Checkpoint { state: state.clone(), params: params.clone() });
         Ok(Self {
             solver: SymplecticEuler::new(&model, &params),
             workers: Arc::new(Inline),
             watch: Watch::new(&state, &params),
-            history: History::new(&state, &params, DEFAULT_HISTORY_BYTES),
+            history: History::new(start.clone(), DEFAULT_HISTORY_BYTES),
+            start,
+            solver_is_stale: false,
             history_bytes: DEFAULT_HISTORY_BYTES,
             drives: Drives::default(),
             ledger: None,
@@ -109,7 +129,7 @@ impl Simulation {
         self.settle_with(options, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// As [`settle`](Self::settle); `progress` hears of every peak and may break off.
+    /// As [`settle`](Self::settle); `progress` hears every 64 steps how far it is and may break off.
     ///
     /// # Errors
     /// As [`settle`](Self::settle), and [`Code::Interrupted`] if `progress` broke off.
@@ -136,21 +156,24 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes to any step between the first and the newest, bit for bit, by replay from a checkpoint.
+    /// Goes to any step between the first and the newest, bit for bit, by replay from a checkpoint or from where it is.
     ///
     /// What lies beyond is kept, and can be gone to, until something new is done.
     ///
     /// # Errors
     /// [`Code::OutOfRange`] for a step that has not been recorded.
     pub fn rewind_to(&mut self, step: u64) -> Result<()> {
-        let (first, newest) = (self.history.first().0.step, self.history.newest());
+        let (first, newest) = (self.history.first().state.step, self.history.newest());
         if !(first..=newest).contains(&step) {
             let sentence = format!("step {step} is not recorded; steps {first} to {newest} are");
             return Err(Error::new(Code::OutOfRange, sentence));
         }
-        let (state, params) = self.history.before(step).clone();
-        self.restore(state, params, 0);
-        self.redo_events(0)?;
+        let checkpoint = self.history.before(step);
+        if !(checkpoint.state.step..=step).contains(&self.state.step) {
+            let Checkpoint { state, params } = checkpoint.clone();
+            self.restore(state, params, 0);
+            self.redo_events(0)?;
+        }
         while self.state.step < step {
             self.advance()?;
             self.redo_events(0)?;
@@ -158,10 +181,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Back to the first state and the first parameters, bit for bit. The log starts anew.
+    /// Back to the state and the parameters this simulation was made with, bit for bit. The log starts anew.
     pub fn reset(&mut self) {
-        let (state, params) = self.history.first().clone();
-        self.history = History::new(&state, &params, self.history_bytes);
+        self.history = History::new(self.start.clone(), self.history_bytes);
+        let Checkpoint { state, params } = (*self.start).clone();
         self.restore(state, params, 0);
     }
 
@@ -182,11 +205,14 @@ impl Simulation {
         self.ledger = on.then(|| Ledger::new(&self.model));
     }
 
-    /// Bounds the memory for checkpoints, bytes, and starts the log anew from the current state. Zero keeps the first
-    /// state only.
+    /// Bounds the memory for checkpoints, bytes, and starts the log anew from the current state, the earliest that can then
+    /// be rewound to. Zero keeps that state only.
     pub fn keep_history(&mut self, bytes: usize) {
         self.history_bytes = bytes;
-        self.history = History::new(&self.state, &self.params, bytes);
+        let untouched = self.state == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
+        let here = || Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() });
+        let first = if untouched { self.start.clone() } else { here() };
+        self.history = History::new(first, bytes);
         self.watch.restart(&self.state, &self.params, 0);
     }
 
@@ -228,6 +254,7 @@ impl Simulation {
 
     /// One step, watched; on a blow-up the last good state is restored and what came after it is forgotten.
     fn advance(&mut self) -> Result<()> {
+        self.refresh_solver();
         self.drives.begin(&self.params, &self.state);
         if let Some(ledger) = &mut self.ledger {
             ledger.begin(&self.model, &self.params, &self.state);
@@ -237,7 +264,7 @@ impl Simulation {
         if let Some(ledger) = &mut self.ledger {
             ledger.end(&self.model, &self.params, &mut self.state);
         }
-        match self.watch.look(&self.model, &self.params, &self.state, finite) {
+        match self.watch.look(&self.model, &self.params, &mut self.state, finite) {
             None => Ok(()),
             Some(blow_up) => {
                 let ((state, params), events) = (self.watch.good().clone(), self.watch.good_events());
@@ -250,10 +277,9 @@ impl Simulation {
     }
 
     fn change_unlogged(&mut self, change: &Change) -> Result<()> {
-        let mut params = self.params.clone();
-        params.apply(&self.model, change)?;
-        let before = is_structural(change).then(|| self.energy().total());
-        self.params = params;
+        let before = moves_energy(change).then(|| self.energy().total());
+        Arc::make_mut(&mut self.params).apply(&self.model, change)?;
+        self.solver_is_stale |= is_packed(change);
         if matches!(change, Change::Dt(_)) {
             self.state.restart_clock();
         }
@@ -263,9 +289,15 @@ impl Simulation {
         if let Some(before) = before {
             // What a change adds to the energy is work put in, not energy from nowhere.
             self.state.ledger.work_in += self.energy().total() - before;
-            self.solver = SymplecticEuler::new(&self.model, &self.params);
         }
         Ok(())
+    }
+
+    /// Packs anew what has changed: once before the next step, however many changes there were.
+    fn refresh_solver(&mut self) {
+        if std::mem::take(&mut self.solver_is_stale) {
+            self.solver = SymplecticEuler::new(&self.model, &self.params);
+        }
     }
 
     /// Settles as the next event after so many others at the current step.
@@ -279,7 +311,6 @@ impl Simulation {
         let settled = self.relax(options, progress);
         if settled.is_err() {
             self.state = before;
-            self.watch.restart(&self.state, &self.params, events);
             return settled;
         }
         // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
@@ -288,6 +319,7 @@ impl Simulation {
         self.state.time = before.time;
         self.state.clock = before.clock;
         self.state.ledger = before.ledger;
+        self.state.ledger.suspect_steps = 0;
         self.state.ledger.work_in += self.energy().total() - energy_before;
         self.watch.restart(&self.state, &self.params, events + 1);
         settled
@@ -298,6 +330,7 @@ impl Simulation {
         options: SettleOptions,
         progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
     ) -> Result<Settled> {
+        self.refresh_solver();
         let allowed = options.residual_force.unwrap_or_else(|| default_residual(&self.params));
         let mut kinetic_before = 0.0;
         stop(&mut self.state);
@@ -319,11 +352,12 @@ impl Simulation {
                 stop(&mut self.state);
                 residual_force = self.solver.residual_force(&self.params, &self.state, &*self.workers);
                 kinetic_before = 0.0;
-                if progress(Settled { steps, residual_force }).is_break() {
-                    return Err(Error::new(Code::Interrupted, "settling was interrupted"));
-                }
             } else {
                 kinetic_before = kinetic;
+            }
+            let is_told = steps.is_multiple_of(STEPS_TO_PROGRESS);
+            if is_told && progress(Settled { steps, residual_force }).is_break() {
+                return Err(Error::new(Code::Interrupted, "settling was interrupted"));
             }
         }
         let sentence = format!(
@@ -335,10 +369,10 @@ impl Simulation {
     }
 
     /// Goes to a good state, that after so many of the events logged for its step.
-    fn restore(&mut self, state: State, params: Params, events: usize) {
-        if params != self.params {
+    fn restore(&mut self, state: State, params: Arc<Params>, events: usize) {
+        if !Arc::ptr_eq(&params, &self.params) {
             self.params = params;
-            self.solver = SymplecticEuler::new(&self.model, &self.params);
+            self.solver_is_stale = true;
         }
         self.state = state;
         self.watch.restart(&self.state, &self.params, events);
@@ -365,13 +399,16 @@ impl std::fmt::Debug for Simulation {
     }
 }
 
-/// Whether a change can alter the energy of the current state, or what the solver has packed.
-fn is_structural(change: &Change) -> bool {
-    use Change::{Cut, Damping, Gravity, Mass, Pin, Planes, RestScale, Stiffness};
-    matches!(
-        change,
-        Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | Damping(..) | RestScale(..) | Cut(..)
-    )
+/// Whether a change can alter the energy of the current state.
+fn moves_energy(change: &Change) -> bool {
+    use Change::{Cut, Gravity, Mass, Pin, Planes, RestScale, Stiffness};
+    matches!(change, Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..))
+}
+
+/// Whether a change alters what the solver has packed: masses and springs.
+fn is_packed(change: &Change) -> bool {
+    use Change::{Cut, Damping, Mass, Pin, RestScale, Stiffness};
+    matches!(change, Mass(..) | Pin(..) | Stiffness(..) | Damping(..) | RestScale(..) | Cut(..))
 }
 
 /// A thousandth of the largest weight, N.

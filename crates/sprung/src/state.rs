@@ -8,7 +8,7 @@ use crate::energy::LedgerSums;
 ///
 /// Positions and velocities are float32 and carry along what their rounding dropped, so that any number of tiny
 /// steps adds up: with dt = 10⁻⁵ s and v = 10 m/s, the increment g·dt would otherwise be rounded by half a per cent.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct State {
     /// Steps taken since the start.
     pub step: u64,
@@ -26,6 +26,31 @@ pub struct State {
     pub ledger: LedgerSums,
     /// Step and time since which dt has not changed: time is their sum with whole steps, not a running sum that drifts.
     pub(crate) clock: (u64, f64),
+}
+
+impl Clone for State {
+    fn clone(&self) -> Self {
+        Self {
+            position: self.position.clone(),
+            position_low: self.position_low.clone(),
+            velocity: self.velocity.clone(),
+            velocity_low: self.velocity_low.clone(),
+            step: self.step,
+            time: self.time,
+            ledger: self.ledger,
+            clock: self.clock,
+        }
+    }
+
+    /// Into the memory that is there: a step allocates nothing.
+    fn clone_from(&mut self, source: &Self) {
+        self.position.clone_from(&source.position);
+        self.position_low.clone_from(&source.position_low);
+        self.velocity.clone_from(&source.velocity);
+        self.velocity_low.clone_from(&source.velocity_low);
+        let Self { step, time, ledger, clock, .. } = *source;
+        (self.step, self.time, self.ledger, self.clock) = (step, time, ledger, clock);
+    }
 }
 
 impl State {
@@ -89,7 +114,7 @@ impl State {
 }
 
 /// A picture of a state that nobody else writes to: the user's order, xyz interleaved.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Snapshot {
     /// Steps taken since the start.
     pub step: u64,
@@ -99,6 +124,20 @@ pub struct Snapshot {
     pub positions: Vec<Vec3>,
     /// Velocities, m/s.
     pub velocities: Vec<Vec3>,
+}
+
+impl Clone for Snapshot {
+    fn clone(&self) -> Self {
+        let (positions, velocities) = (self.positions.clone(), self.velocities.clone());
+        Self { step: self.step, time: self.time, positions, velocities }
+    }
+
+    /// Into the memory that is there.
+    fn clone_from(&mut self, source: &Self) {
+        (self.step, self.time) = (source.step, source.time);
+        self.positions.clone_from(&source.positions);
+        self.velocities.clone_from(&source.velocities);
+    }
 }
 
 impl Snapshot {

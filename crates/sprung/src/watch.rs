@@ -4,12 +4,15 @@
 //! kinetic + elastic energy for 20 steps in a row.
 
 use std::fmt;
+use std::sync::Arc;
 
 use crate::energy::Energy;
 use crate::model::Model;
+use crate::params::DT_RANGE;
 use crate::params::Params;
 use crate::stability::{self, Setter};
 use crate::state::State;
+use crate::text::{round_down, significant};
 
 /// Steps in a row that energy must come from nowhere before a run counts as blown up. Also how often, in steps, a calm run
 /// is looked at: the energy of a large model costs about as much as a step.
@@ -94,106 +97,109 @@ impl BlowUp {
     }
 }
 
-/// To two significant digits, downwards.
-fn round_down(value: f64) -> f64 {
-    let digits = format!("{value:.1e}");
-    let rounded: f64 = digits.parse().unwrap_or(value);
-    if rounded <= value {
-        return rounded;
-    }
-    let unit: f64 = digits.split_once('e').and_then(|(_, e)| format!("1e{e}").parse().ok()).unwrap_or(0.0);
-    format!("{:.1e}", rounded - 0.1 * unit).parse().unwrap_or(value)
-}
-
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the simulation blew up at t = {:.4} s (step {}): ", self.time, self.step)?;
+        let (time, good_time) = (significant(self.time), significant(self.good_time));
+        write!(f, "the simulation blew up at t = {time} s (step {}): ", self.step)?;
         match self.cause {
             Cause::NotFinite => write!(f, "a position is no longer a finite number. ")?,
             Cause::EnergyFromNowhere { excess } => {
+                let excess = significant(excess);
                 write!(
                     f,
-                    "for {PATIENCE} steps more than half of its energy has come from nowhere ({excess:.3e} J). "
+                    "for {PATIENCE} steps more than half of its energy has come from nowhere ({excess} J). "
                 )?;
             }
         }
         write!(
             f,
-            "The state of t = {:.4} s (step {}) is the last good one and is kept. ",
-            self.good_time, self.good_step
+            "The state of t = {good_time} s (step {}) is the last good one and is kept. ",
+            self.good_step
         )?;
         self.write_reason(f)?;
         match self.suggested_dt() {
-            Some(dt) => write!(f, "Use dt = {dt} s or less, or dt = \"auto\".")?,
-            None => write!(f, "Use a smaller dt, less stiffness or less damping.")?,
+            Some(dt) if dt >= *DT_RANGE.start() => {
+                write!(f, "Use dt = {} s or less, or dt = \"auto\".", significant(dt))
+            }
+            Some(_) => {
+                let least = significant(*DT_RANGE.start());
+                write!(
+                    f,
+                    "No step of {least} s or more is stable: raise masses, or lower stiffness or damping."
+                )
+            }
+            None => write!(f, "Use a smaller dt, less stiffness or less damping."),
         }
-        Ok(())
     }
 }
 
 impl BlowUp {
     fn write_reason(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let dt = self.dt;
         match (&self.points[..], self.spring) {
             (&[i, j], Some(spring)) => {
-                write!(
-                    f,
-                    "The tightest limit is set by spring {spring} of {} (points {i} and {j}): ",
-                    self.owner
-                )?;
+                let owner = &self.owner;
+                write!(f, "The tightest limit is set by spring {spring} of {owner} (points {i} and {j}): ")?;
             }
             (&[point], _) => {
                 write!(f, "The tightest limit is set by the contact or grab at point {point}: ")?
             }
             _ => {}
         }
+        let dt = significant(self.dt);
         match (self.dt_limit_certified, self.dt_limit_every_configuration) {
-            (Some(limit), _) if dt > limit => {
+            (Some(limit), _) if self.dt > limit => {
+                let (share, limit) = (100.0 * self.dt / limit, significant(limit));
+                write!(f, "dt = {dt} s is {share:.0} % of the certified limit of {limit} s there. ")
+            }
+            (limit, Some(every)) if self.dt > every => {
+                let within = match limit {
+                    Some(limit) => {
+                        format!("was within the certified limit of {} s for that state", significant(limit))
+                    }
+                    None => "had no limit in that state, where nothing touches".to_owned(),
+                };
+                let every = significant(every);
                 write!(
                     f,
-                    "dt = {dt} s is {:.0} % of the certified limit of {limit:.4e} s there. ",
-                    100.0 * dt / limit
+                    "dt = {dt} s {within}, but it is over the {every} s that hold in every configuration, and the motion has \
+                     crossed into one that is not stable. "
                 )
             }
-            (Some(limit), Some(every)) if dt > every => write!(
-                f,
-                "dt = {dt} s was within the certified limit of {limit:.4e} s for that state, but over the {every:.4e} s that \
-                 hold in every configuration, and the motion has crossed into one that is not stable. "
-            ),
-            (Some(limit), _) => write!(
-                f,
-                "dt = {dt} s was within the certified limit of {limit:.4e} s, so the cause is not the step length alone. "
-            ),
+            (Some(limit), _) => {
+                let limit = significant(limit);
+                write!(
+                    f,
+                    "dt = {dt} s was within the certified limit of {limit} s, so the cause is not the step length alone. "
+                )
+            }
             (None, _) => write!(f, "No spring or contact limits dt = {dt} s at that state. "),
         }
     }
 }
 
-/// Looks at a run as it goes and keeps its last good state, with the parameters that led there.
+/// Looks at a run as it goes and keeps its last good state, with the parameters that led there. How long a run has been
+/// suspect is part of its state, so that a run that is taken up again is judged as if it had never stopped.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
-    good: (State, Params),
+    good: (State, Arc<Params>),
     /// How many of the events logged for the good state's step it already holds: settling makes a good state of its own.
     good_events: usize,
-    /// Steps in a row with too much energy.
-    streak: u64,
 }
 
 impl Watch {
-    pub fn new(state: &State, params: &Params) -> Self {
-        Self { good: (state.clone(), params.clone()), good_events: 0, streak: 0 }
+    pub fn new(state: &State, params: &Arc<Params>) -> Self {
+        Self { good: (state.clone(), params.clone()), good_events: 0 }
     }
 
-    /// Starts over from a state that is known to be good, after so many of the events logged for its step.
-    pub fn restart(&mut self, state: &State, params: &Params, events: usize) {
+    /// From here on this is the state to go back to, after so many of the events logged for its step.
+    pub fn restart(&mut self, state: &State, params: &Arc<Params>, events: usize) {
         self.good.0.clone_from(state);
         self.good.1.clone_from(params);
         self.good_events = events;
-        self.streak = 0;
     }
 
     /// The last state that was looked at and found good.
-    pub fn good(&self) -> &(State, Params) {
+    pub fn good(&self) -> &(State, Arc<Params>) {
         &self.good
     }
 
@@ -203,20 +209,28 @@ impl Watch {
     }
 
     /// After every step: what blew up, if something did.
-    pub fn look(&mut self, model: &Model, params: &Params, state: &State, finite: bool) -> Option<BlowUp> {
+    pub fn look(
+        &mut self,
+        model: &Model,
+        params: &Arc<Params>,
+        state: &mut State,
+        finite: bool,
+    ) -> Option<BlowUp> {
         if !finite {
             return Some(self.not_finite(model, params, state));
         }
-        if self.streak == 0 && !state.step.is_multiple_of(PATIENCE) {
+        if state.ledger.suspect_steps == 0 && !state.step.is_multiple_of(PATIENCE) {
             return None;
         }
         let Some(excess) = excess(model, params, state) else {
+            state.ledger.suspect_steps = 0;
             self.restart(state, params, 0);
             return None;
         };
-        self.streak += 1;
+        state.ledger.suspect_steps += 1;
         let cause = Cause::EnergyFromNowhere { excess };
-        (self.streak >= PATIENCE).then(|| BlowUp::new(model, params, cause, state, &self.good.0))
+        (state.ledger.suspect_steps >= PATIENCE)
+            .then(|| BlowUp::new(model, params, cause, state, &self.good.0))
     }
 
     /// The report of a state that is not finite.

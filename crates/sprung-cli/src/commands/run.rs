@@ -4,11 +4,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use sprung::scene::Scene;
-use sprung::{Change, Code, Error, Params, Result, SettleOptions, Simulation, stability};
+use sprung::{
+    Change, Code, Error, Params, Result, SettleOptions, Simulation, significant as rounded, stability,
+};
 use sprung_io::{Options, RunInfo};
 
 use super::record::Recorder;
-use super::show::{describe, rounded};
+use super::show::describe;
 use crate::args::RunArgs;
 use crate::console::{bytes, counted, grouped, note, progress, say, seconds};
 use crate::interrupt::Interrupt;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sprung::stability::{self, Limit, Setter, Sharp};
-use sprung::{Energy, Result, Simulation};
+use sprung::{Energy, Result, Simulation, significant as rounded};
 
 use crate::args::ShowArgs;
 use crate::console::{grouped, say};
@@ -147,16 +147,6 @@ pub fn describe(simulation: &Simulation, setter: Setter) -> String {
             format!("spring {spring} of {} (points {i} and {j})", simulation.model().spring_owner(spring))
         }
         Setter::Point(point) => format!("the contact or grab at point {point}"),
-    }
-}
-
-/// Six significant digits.
-pub fn rounded(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-4..1e9).contains(&rounded.abs()) {
-        format!("{rounded:e}")
-    } else {
-        rounded.to_string()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::error::{Code, Error, Result};
 use crate::math::distance;
 use crate::model::{Body, Joint, Model, Surface, SurfaceKind};
 use crate::params::{
-    DAMPING_RANGE, LENGTH_RANGE, Params, STIFFNESS_RANGE, check_in, check_mass, check_vector,
+    DAMPING_RANGE, DT_RANGE, LENGTH_RANGE, Params, STIFFNESS_RANGE, check_in, check_mass, check_vector,
 };
 use crate::simulation::Simulation;
 use crate::stability;
@@ -280,6 +280,9 @@ impl ModelBuilder {
     }
 
     /// Where a point is, m.
+    ///
+    /// # Panics
+    /// If there is no such point.
     pub fn position(&self, point: usize) -> Vec3 {
         self.position[point]
     }
@@ -287,13 +290,13 @@ impl ModelBuilder {
     /// The finished model, its parameters and its first state.
     ///
     /// The parameters start with standard gravity (0, −9.81, 0) m/s², no plane, one step per frame, and the `dt` that
-    /// [`stability::auto_dt`] chooses; change them before a [`Simulation`] is made of them.
+    /// [`stability::auto_dt`] chooses (the smallest there is, where none is safe); change them before a [`Simulation`] is made of them.
     ///
     /// # Errors
     /// [`Code::Conflict`] for a builder without points.
     pub fn build(self) -> Result<(Model, Params, State)> {
         let (model, mut params, state) = self.parts()?;
-        params.dt = stability::auto_dt(&model, &params);
+        params.dt = stability::auto_dt(&model, &params).unwrap_or(*DT_RANGE.start());
         Ok((model, params, state))
     }
 

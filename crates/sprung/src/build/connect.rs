@@ -3,7 +3,10 @@
 use glam::Vec3;
 
 use crate::error::Result;
-use crate::params::{LENGTH_RANGE, check_in};
+use crate::params::{LENGTH_RANGE, check_in, check_vector};
+
+/// Half the distance from 1 to the next float32: 2⁻²⁴.
+const UNIT_ROUNDOFF: f64 = 1.0 / 16_777_216.0;
 
 /// All pairs i < j of positions (m) that are no further apart than `radius` (m), in the order of the double loop
 /// `for i { for j in i+1.. }`. `None` if there are more than `limit`; no more memory than that is ever taken.
@@ -20,9 +23,10 @@ use crate::params::{LENGTH_RANGE, check_in};
 /// ```
 ///
 /// # Errors
-/// [`Code::OutOfRange`](crate::Code::OutOfRange) for a radius that is negative or not finite.
+/// [`Code::OutOfRange`](crate::Code::OutOfRange) for a radius that is negative or a number that is not finite.
 pub fn pairs_within(positions: &[Vec3], radius: f32, limit: usize) -> Result<Option<Vec<[u32; 2]>>> {
     check_in("radius", radius, &LENGTH_RANGE)?;
+    positions.iter().try_for_each(|&position| check_vector("position", position))?;
     let reach = reach(positions, radius);
     let reach_squared = reach * reach;
     let grid = CellGrid::new(positions, reach);
@@ -58,6 +62,7 @@ pub fn pairs_within(positions: &[Vec3], radius: f32, limit: usize) -> Result<Opt
 /// [`Code::OutOfRange`](crate::Code::OutOfRange) for a radius that is negative or not finite.
 pub fn pairs_between(a: &[Vec3], b: &[Vec3], radius: f32, limit: usize) -> Result<Option<Vec<[u32; 2]>>> {
     check_in("radius", radius, &LENGTH_RANGE)?;
+    a.iter().chain(b).try_for_each(|&position| check_vector("position", position))?;
     let reach = reach(a, radius).max(reach(b, radius));
     let grid = CellGrid::new(b, reach);
 
@@ -83,7 +88,7 @@ pub fn pairs_between(a: &[Vec3], b: &[Vec3], radius: f32, limit: usize) -> Resul
 /// The radius with an allowance for the rounding of coordinates and of the radius itself to float32.
 fn reach(positions: &[Vec3], radius: f32) -> f64 {
     let largest = positions.iter().fold(0.0f32, |max, position| max.max(position.abs().max_element()));
-    f64::from(radius) + 4.0 * (f64::from(largest) + f64::from(radius)) * 2f64.powi(-24)
+    f64::from(radius) + 4.0 * (f64::from(largest) + f64::from(radius)) * UNIT_ROUNDOFF
 }
 
 /// Points sorted by the cell they lie in. Cells are cubes at least as long as the reach, so that all partners of a
@@ -229,5 +234,7 @@ mod tests {
     fn a_radius_that_is_not_a_number_is_refused() {
         assert!(pairs_within(&[Vec3::ZERO], f32::NAN, 10).is_err());
         assert!(pairs_within(&[Vec3::ZERO], -1.0, 10).is_err());
+        assert!(pairs_within(&[Vec3::ZERO, Vec3::INFINITY], 1.0, 10).is_err());
+        assert!(pairs_between(&[Vec3::ZERO], &[Vec3::NAN], 1.0, 10).is_err());
     }
 }

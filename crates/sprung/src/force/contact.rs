@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Account, Force};
+use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -11,6 +11,7 @@ pub(crate) const FORCE: Force = Force {
     name: "contact",
     description: "planes that push points back out",
     formula: "f_i = (k_c p − k_c,d v_i·n) n while the depth p = (point − x_i)·n > 0; under the law \"push\" never a pull",
+    store: Store::Contact,
     account: Account::Contact,
     potential,
     parts,

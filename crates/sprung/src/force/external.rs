@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Account, Force};
+use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -11,6 +11,7 @@ pub(crate) const FORCE: Force = Force {
     name: "external",
     description: "constant forces on single points",
     formula: "f_i = F_i",
+    store: Store::None,
     account: Account::WorkIn,
     potential: |_, _, _| 0.0,
     parts,

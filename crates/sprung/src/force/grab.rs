@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Account, Force};
+use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -12,6 +12,7 @@ pub(crate) const FORCE: Force = Force {
     name: "grab",
     description: "a point pulled towards a place",
     formula: "f_i = k (target − x_i) − d v_i",
+    store: Store::None,
     account: Account::WorkIn,
     potential: |_, _, _| 0.0,
     parts,

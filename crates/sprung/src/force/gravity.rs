@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Account, Force};
+use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -11,6 +11,7 @@ pub(crate) const FORCE: Force = Force {
     name: "gravity",
     description: "the same acceleration for every point",
     formula: "f_i = m_i g",
+    store: Store::Gravitational,
     account: Account::None,
     potential,
     parts,

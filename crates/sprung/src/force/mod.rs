@@ -15,6 +15,19 @@ use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
 
+/// Where the ledger books the energy that a force stores.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Store {
+    /// It stores none.
+    None,
+    /// In height.
+    Gravitational,
+    /// In springs.
+    Elastic,
+    /// In what is pressed into.
+    Contact,
+}
+
 /// Where the ledger books the work of a force that does not come out of its stored energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Account {
@@ -36,6 +49,8 @@ pub struct Force {
     pub description: &'static str,
     /// The formula, with the symbols of the guide.
     pub formula: &'static str,
+    /// Where the energy that it stores goes.
+    pub store: Store,
     /// Where the work of its non-conservative part goes.
     pub account: Account,
     /// The energy it stores at a state, J.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Account, Force};
+use super::{Account, Force, Store};
 use crate::math::COINCIDENT_SQUARED;
 use crate::model::Model;
 use crate::params::Params;
@@ -12,6 +12,7 @@ pub(crate) const FORCE: Force = Force {
     name: "spring",
     description: "springs with a damper along their axis",
     formula: "f_i = −(k_s(ℓ − L) + k_d (v_i − v_j)·u) u, f_j = −f_i, u = (x_i − x_j)/ℓ",
+    store: Store::Elastic,
     account: Account::Dampers,
     potential,
     parts,

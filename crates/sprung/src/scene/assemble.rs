@@ -101,7 +101,7 @@ impl<'a> Assembly<'a> {
         }
         params.dt = match self.scene.dt {
             Dt::Seconds(dt) => dt,
-            Dt::Auto => stability::auto_dt(&model, &params),
+            Dt::Auto => stability::auto_dt(&model, &params).map_err(|error| error.at_field("dt"))?,
         };
         params.validate(&model)?;
         Ok((model, params, state))

@@ -5,10 +5,12 @@ use glam::DVec3;
 use super::types::{Body, GridPlane, Scene, Springs};
 use crate::build::{DEFAULT_MAX_SPRINGS, Lattice};
 
-/// Memory of one point in model, params and state, bytes.
-const POINT_BYTES: u64 = 64;
-/// Memory of one spring in model and params, and of the list of pairs it is made from, bytes.
-const SPRING_BYTES: u64 = 40;
+/// Memory of one point in a simulation (state, the first and the last good one, parameters, forces: 260 as measured on
+/// large scenes) and in the vectors with which the sharp limit is found (160), bytes.
+const POINT_BYTES: u64 = 420;
+/// Memory of one spring in a simulation (41 as measured), as several threads see it (40), and where the sharp limit is
+/// found (32), bytes.
+const SPRING_BYTES: u64 = 115;
 
 impl Body {
     /// The lattice of a chain, grid or block; `None` for explicit points.
@@ -91,8 +93,8 @@ impl Scene {
         self.max_springs.map_or(DEFAULT_MAX_SPRINGS as u64, u64::from)
     }
 
-    /// About how much memory model, params and first state will take, bytes, without building them: for a check against
-    /// what there is before [`build`](Self::build) asks for it. Springs by radius among explicit points or between
+    /// About how much memory simulating the scene and finding its limits will take, bytes, without building it: for a
+    /// check against what there is before [`build`](Self::build) asks for it. Springs by radius among explicit points or between
     /// bodies are counted as if all points were that near, up to the scene's limit on springs.
     pub fn estimated_bytes(&self) -> u64 {
         let limit = self.spring_limit();

@@ -99,14 +99,14 @@ fn every_built_in_scene_builds_and_survives_being_written_out() {
 fn the_starter_is_a_scene() {
     let scene = Scene::parse(STARTER, "starter.toml").unwrap_or_else(|error| panic!("{error}"));
     let (model, params, _) = scene.build().unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(params.dt, crate::stability::auto_dt(&model, &params));
+    assert_eq!(params.dt, crate::stability::auto_dt(&model, &params).expect("there is one"));
 }
 
 #[test]
 fn gallery_scenes_keep_clear_of_the_largest_stable_step() {
     for builtin in BUILTIN.iter().filter(|builtin| builtin.kind == Kind::Gallery) {
         let (model, params, _) = build(builtin.name);
-        let auto = crate::stability::auto_dt(&model, &params);
+        let auto = crate::stability::auto_dt(&model, &params).expect("there is one");
         assert!(params.dt < 0.85 * auto, "{}: dt = {}, \"auto\" would be {auto}", builtin.name, params.dt);
     }
 }

@@ -12,8 +12,8 @@ use crate::workers::Workers;
 /// The semi-implicit Euler method (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, eq. I.1.9):
 /// v⁺ = v + dt·M⁻¹ f(x, v), then x⁺ = x + dt·v⁺.
 ///
-/// Owns its scratch memory. Made anew for a model, told when the parameters have changed; then each step is the same
-/// function of parameters and state, whatever was computed before.
+/// Owns its scratch memory, in which it packs masses and springs: make it anew when masses, pins, springs or their
+/// parameters have changed. Each step is the same function of parameters and state, whatever was computed before.
 #[derive(Clone, Debug)]
 pub struct SymplecticEuler {
     springs: SpringKernel,

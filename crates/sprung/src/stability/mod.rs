@@ -41,8 +41,10 @@ mod top_mode;
 pub use certified::{certified, every_configuration};
 pub use sharp::{Sharp, sharp};
 
+use crate::error::{Code, Error, Result};
 use crate::model::Model;
 use crate::params::{DT_RANGE, Params};
+use crate::text::significant;
 
 /// A step length that is safe, and what keeps it from being larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,12 +86,22 @@ const AUTO_DT_FRACTION: f64 = 0.95;
 /// builder.add_spring(hook, bob, Material { stiffness: 1.0e6, damping: 0.0 })?;
 /// let (model, params, _) = builder.build()?;
 /// // ω = √(k/m) = 1000 1/s, so the limit is 2/ω = 2 ms.
-/// assert!((stability::auto_dt(&model, &params) - 0.95 * 0.002).abs() < 1e-9);
+/// assert!((stability::auto_dt(&model, &params)? - 0.95 * 0.002).abs() < 1e-9);
 /// # Ok::<(), sprung::Error>(())
 /// ```
-pub fn auto_dt(model: &Model, params: &Params) -> f64 {
+///
+/// # Errors
+/// [`Code::OutOfRange`] where that is less than the smallest step allowed, 10⁻⁹ s.
+pub fn auto_dt(model: &Model, params: &Params) -> Result<f64> {
     let limit = every_configuration(model, params).map_or(f64::INFINITY, |limit| limit.dt);
-    (AUTO_DT_FRACTION * limit).min(AUTO_DT_MAX).max(*DT_RANGE.start())
+    let dt = (AUTO_DT_FRACTION * limit).min(AUTO_DT_MAX);
+    if dt >= *DT_RANGE.start() {
+        return Ok(dt);
+    }
+    let (least, limit) = (significant(*DT_RANGE.start()), significant(limit));
+    let sentence =
+        format!("no step of {least} s or more is stable here in every configuration; the limit is {limit} s");
+    Err(Error::new(Code::OutOfRange, sentence).with_fix("raise masses, or lower stiffness or damping"))
 }
 
 /// The dt at which a mode's demand dt²ω² + 2dt·c reaches 4, s. `None` if it never does.
