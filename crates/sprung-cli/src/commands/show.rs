@@ -53,8 +53,12 @@ pub fn run(args: &ShowArgs) -> Result<()> {
     let (name, scene) = source::scene(&args.scene)?;
     let simulation = source::simulation(&scene, 1)?;
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
-    let sharp = stability::sharp(model, params, positions);
-    let certified = stability::certified(model, params, positions);
+    // Of a large scene each takes about a second; so both at once.
+    let (sharp, certified) = std::thread::scope(|scope| {
+        let certified = scope.spawn(|| stability::certified(model, params, positions));
+        (stability::sharp(model, params, positions), certified.join())
+    });
+    let certified = certified.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let every = stability::every_configuration(model, params);
     let energy = simulation.energy();
     if args.json {
@@ -157,8 +161,7 @@ fn fixed_points(simulation: &Simulation) -> usize {
 /// Of the points that can move, kg: a fixed point has no mass as far as the motion goes.
 fn total_mass(simulation: &Simulation) -> f64 {
     let (params, points) = (simulation.params(), simulation.model().point_count());
-    (0..points)
-        .filter(|&point| !params.is_fixed(point))
-        .map(|point| f64::from(params.point_mass[point]))
-        .sum()
+    let free = (0..points).filter(|&point| !params.is_fixed(point));
+    // Not `sum`, which makes -0 of nothing.
+    free.fold(0.0, |sum, point| sum + f64::from(params.point_mass[point]))
 }
