@@ -12,6 +12,9 @@ const BUFFER_BYTES: usize = 1 << 16;
 
 /// A file that grows as `NAME.partial` and gets its name when it is whole. Dropped unfinished, it is removed.
 ///
+/// Only a regular file is ever replaced: through a symbolic link that is the file it leads to, and a pipe or a device
+/// is refused and left alone, be it at the name or at `NAME.partial`.
+///
 /// While it grows it is locked, so that two runs never mix their output in one file. The `.partial` of a run that was
 /// killed is not locked any more, and the next run writes over it.
 ///
@@ -19,7 +22,10 @@ const BUFFER_BYTES: usize = 1 << 16;
 /// frame and [`roll_back`](Self::roll_back) before it completes the file.
 #[derive(Debug)]
 pub struct PartialFile {
+    /// The name as the user gave it, for messages.
     path: PathBuf,
+    /// Where the file goes: the same, unless that is a symbolic link.
+    target: PathBuf,
     partial: PathBuf,
     writer: Option<BufWriter<File>>,
     committed: u64,
@@ -29,30 +35,39 @@ impl PartialFile {
     /// Begins `path`, as `path.partial`.
     ///
     /// # Errors
-    /// [`Code::Unwritable`], naming the file: its folder is missing or closed to us, it is itself a folder, or it is
-    /// being written already.
+    /// [`Code::Unwritable`], naming the file: its folder is missing or closed to us, it or its partial file is
+    /// there and no regular file, or it is being written already.
     pub fn create(path: &Path) -> Result<Self> {
         if path.is_dir() {
             return Err(unwritable(path, "cannot be written: it is a folder").with_fix("give a file's name"));
         }
-        let Some(name) = path.file_name() else {
+        let target = target_of(path)?;
+        let Some(name) = target.file_name() else {
             return Err(unwritable(path, "cannot be written: it is not a file's name"));
         };
         let mut name = name.to_owned();
         name.push(".partial");
-        let partial = path.with_file_name(name);
+        let partial = target.with_file_name(name);
         let file = open_locked(&partial).map_err(|error| match error.kind() {
             io::ErrorKind::WouldBlock => {
                 unwritable(path, "cannot be written: another output is being written there")
                     .with_fix("wait until it is done, or give another name")
             }
+            io::ErrorKind::AlreadyExists => {
+                let name = partial.display();
+                unwritable(
+                    path,
+                    format!("cannot be written: {name} is in the way, and is not a regular file"),
+                )
+                .with_fix("remove it, or give another name")
+            }
             _ => write_error(path, &error),
         })?;
         let writer = Some(BufWriter::with_capacity(BUFFER_BYTES, file));
-        Ok(Self { path: path.to_owned(), partial, writer, committed: 0 })
+        Ok(Self { path: path.to_owned(), target, partial, writer, committed: 0 })
     }
 
-    /// The name the file will have.
+    /// The name the file will have, as it was given.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -99,7 +114,7 @@ impl PartialFile {
         file.sync_all()?;
         let bytes = file.metadata()?.len();
         // Renamed while still locked: nobody can take the partial file for an abandoned one in between.
-        std::fs::rename(&self.partial, &self.path)?;
+        std::fs::rename(&self.partial, &self.target)?;
         self.writer = None;
         Ok(bytes)
     }
@@ -136,11 +151,44 @@ impl Seek for PartialFile {
     }
 }
 
-/// Opens or creates a file, empty and locked. `WouldBlock` if somebody else holds the lock.
+/// Where a file of this name goes: behind a symbolic link, to the file that it leads to, so that the link stays a link.
+/// Renaming would put a file in the place of anything else, and be the end of a pipe or a device.
+fn target_of(path: &Path) -> Result<PathBuf> {
+    let refused =
+        |why: &str| Err(unwritable(path, format!("cannot be written: {why}")).with_fix("give another name"));
+    let found = match path.symlink_metadata() {
+        Ok(found) => found,
+        // A missing folder is found out when the file is opened.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(path.to_owned()),
+        Err(error) => return Err(write_error(path, &error)),
+    };
+    let target = if found.is_symlink() { path.canonicalize().ok() } else { Some(path.to_owned()) };
+    match target {
+        None => refused("it is a link that leads to no file"),
+        Some(target) if target.is_file() => Ok(target),
+        Some(_) => refused("it is not a regular file"),
+    }
+}
+
+/// Opens or creates a file, empty and locked. `WouldBlock` if somebody else holds the lock, `AlreadyExists` if what has
+/// the name is no regular file: opening a pipe would wait for its reader, and a link leads to a file that is not ours.
 fn open_locked(path: &Path) -> io::Result<File> {
     loop {
-        // Not truncated before it is ours: it may be another run's.
-        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        let opened = match path.symlink_metadata() {
+            // Not truncated before it is ours: it may be another run's.
+            Ok(found) if found.is_file() => OpenOptions::new().write(true).open(path),
+            Ok(_) => return Err(io::ErrorKind::AlreadyExists.into()),
+            Err(_) => OpenOptions::new().write(true).create_new(true).open(path),
+        };
+        let file = match opened {
+            Ok(file) => file,
+            // Another run created or completed it since we looked: look again.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
+            Err(error) if error.kind() == io::ErrorKind::NotFound && path.symlink_metadata().is_ok() => {
+                continue;
+            }
+            Err(error) => return Err(error),
+        };
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(io::ErrorKind::WouldBlock.into()),
@@ -168,7 +216,9 @@ fn open_locked(path: &Path) -> io::Result<File> {
 /// # Errors
 /// [`Code::Unwritable`], naming `path`.
 pub fn spool_beside(path: &Path) -> Result<File> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // Where the output is a link, its disk is that of the file it leads to.
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))
 }
 

@@ -12,7 +12,8 @@ use crate::console;
 pub fn run(args: &NewArgs) -> Result<()> {
     let path = &args.file;
     let name = path.display().to_string();
-    if path.is_file() {
+    // Whatever has the name: a file, a folder, a pipe, or a link, even one that leads nowhere.
+    if path.symlink_metadata().is_ok() {
         let error = Error::new(Code::Unwritable, "exists already and is left as it is").in_file(name);
         return Err(error.with_fix("give another name"));
     }

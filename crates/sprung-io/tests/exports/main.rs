@@ -4,4 +4,6 @@ mod common;
 #[cfg(target_os = "linux")]
 mod full_disk;
 mod npz;
+#[cfg(unix)]
+mod places;
 mod tables;

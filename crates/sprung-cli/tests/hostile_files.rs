@@ -1,0 +1,59 @@
+//! What stands where a file is to go, and is not ours to replace.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::os::unix::fs::{FileTypeExt, symlink};
+use std::path::Path;
+use std::process::Command;
+
+use tempfile::TempDir;
+
+/// Runs, expects status 2, and gives what was said.
+fn complaint(folder: &Path, arguments: &[&str]) -> String {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_sprung")).current_dir(folder).args(arguments).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+    said
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn new_replaces_nothing() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    assert!(Command::new("mkfifo").arg(at("pipe.toml")).status().unwrap().success());
+    symlink("nowhere.toml", at("dangling.toml")).unwrap();
+    fs::write(at("mine.toml"), "mine").unwrap();
+    symlink("mine.toml", at("link.toml")).unwrap();
+    for name in ["pipe.toml", "dangling.toml", "mine.toml", "link.toml"] {
+        let said = complaint(folder.path(), &["new", name]);
+        assert_eq!(said, format!("sprung: {name}: exists already and is left as it is; give another name\n"));
+    }
+    assert!(at("pipe.toml").symlink_metadata().unwrap().file_type().is_fifo());
+    assert!(at("link.toml").is_symlink() && at("dangling.toml").is_symlink());
+    assert_eq!(fs::read(at("mine.toml")).unwrap(), b"mine");
+    assert_eq!(names_in(folder.path()), ["dangling.toml", "link.toml", "mine.toml", "pipe.toml"]);
+}
+
+#[test]
+fn outputs_replace_no_pipe() {
+    let folder = TempDir::new().unwrap();
+    for name in ["a.csv", "b.gif.partial", "c.svg"] {
+        assert!(Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap().success());
+    }
+    for arguments in [["-o", "a.csv"], ["-o", "b.gif"], ["--plot", "c.svg"]] {
+        let said = complaint(folder.path(), &[&["run", "spring", "--frames", "2"], &arguments[..]].concat());
+        assert!(said.contains("not a regular file"), "{said}");
+    }
+    assert_eq!(names_in(folder.path()), ["a.csv", "b.gif.partial", "c.svg"]);
+}
