@@ -34,7 +34,7 @@ chain = { points = 3, step = [1, 0, 0] }
     ("Syntax", "hello\n", "my.toml:1:6: is not valid TOML: key with no value, expected `=`"),
     ("Syntax", "[[body]\n", "my.toml:1:8: is not valid TOML: unclosed array table, expected `]`"),
     ("MissingField", "dt = 0.01\n", "my.toml:1:1: body: is missing; a scene needs at least one [[body]]"),
-    ("Syntax", "\0", "my.toml:1:2: is not valid TOML: key with no value, expected `=`"),
+    ("Syntax", "\0", "my.toml:1:1: has a byte that is not text here (NUL); is this a TOML file?"),
     (
         "WrongType",
         r#"dt = "fast"
@@ -60,7 +60,7 @@ chain = { points = 3, step = [1, 0, 0] }
 name = "a"
 chain = { points = 3, step = [1, 0, 0] }
 "#,
-        "my.toml:1:12: substeps: is 1.5, and must be a whole number from 0 to 4294967295",
+        "my.toml:1:12: substeps: is 1.5, and must be a whole number from 1 to 1000000",
     ),
     (
         "WrongType",
@@ -69,7 +69,7 @@ chain = { points = 3, step = [1, 0, 0] }
 name = "a"
 chain = { points = 3, step = [1, 0, 0] }
 "#,
-        r#"my.toml:1:12: substeps: is the text "many", and must be a whole number from 0 to 4294967295"#,
+        r#"my.toml:1:12: substeps: is the text "many", and must be a whole number from 1 to 1000000"#,
     ),
     (
         "WrongType",
@@ -243,7 +243,7 @@ chain = { points = 3, step = [1, 0, 0] }
 name = "a"
 chain = { points = 3, step = [1, 0, 0] }
 "#,
-        "my.toml:1:12: substeps: is 99999999999999999999, and must be a whole number from 0 to 4294967295",
+        "my.toml:1:12: substeps: is 99999999999999999999, and must be a whole number from 1 to 1000000",
     ),
     (
         "OutOfRange",
@@ -252,7 +252,7 @@ chain = { points = 3, step = [1, 0, 0] }
 name = "a"
 chain = { points = 3, step = [1, 0, 0] }
 "#,
-        "my.toml:1:12: substeps: is -1, and must be a whole number from 0 to 4294967295",
+        "my.toml:1:12: substeps: is -1, and must be a whole number from 1 to 1000000",
     ),
     (
         "MissingField",
@@ -1155,6 +1155,38 @@ rest_scale = 1e8
 "#,
         "my.toml:7:14: body[0].springs[0].rest_scale: makes a spring 1e10 m long at rest, and it may be at most 1e9 m",
     ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a\u001b[31m"
+points = [[0, 0, 0]]
+"#,
+        r"my.toml:2:8: body[0].name: has the invisible character \u{1b}, and must be made of visible ones",
+    ),
+    (
+        "OutOfRange",
+        "[[body]]\nname = \"a\u{202e}b\"\npoints = [[0, 0, 0]]\n",
+        r"my.toml:2:8: body[0].name: has the invisible character \u{202e}, and must be made of visible ones",
+    ),
+    (
+        "WrongType",
+        r#"substeps = "two\nlines and \u001b[31mred"
+[[body]]
+name = "a"
+points = [[0, 0, 0]]
+"#,
+        r#"my.toml:1:12: substeps: is the text "two\nlines and \u{1b}[31mred", and must be a whole number from 1 to 1000000"#,
+    ),
+    (
+        "UnknownKey",
+        r#""d\u001bt" = 1"#,
+        r#"my.toml:1:1: d\u{1b}t: is not a known key; allowed here are title, description, dt, substeps, gravity, max_springs, plane, body, joint; did you mean "dt"?"#,
+    ),
+    (
+        "Syntax",
+        "dt = 1\ntitle = \"a\0\"",
+        "my.toml:2:11: has a byte that is not text here (NUL); is this a TOML file?",
+    ),
 ];
 
 /// (code, key, value, message): changes that are refused, to the scene of the jelly.
@@ -1215,7 +1247,20 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "1",
         "--set body.5.scale=1: body: there is no entry 5 here; entries are 0 to 0",
     ),
-    ("NotFound", "joint.stiffness", "5", "--set joint.stiffness=5: joint: is not in this scene"),
+    ("OutOfRange", "dt", "1e400", "--set dt=1e400: dt: is 1e400, and must be a finite number"),
+    (
+        "OutOfRange",
+        "max_springs",
+        "-1",
+        "--set max_springs=-1: max_springs: is -1, and must be a whole number from 1 to 4294967295",
+    ),
+    (
+        "Syntax",
+        "d\u{1b}[31mt",
+        "\u{202e}",
+        r"--set d\u{1b}[31mt=\u{202e}: has `\u{202e}` where a value must be; text needs quotes, lists need commas; write the value as in a scene file, such as 0.5 or [0, 1, 0]",
+    ),
+    ("NotFound", "joint.stiffness", "5", "--set joint.stiffness=5: this scene has no joint"),
     (
         "OutOfRange",
         "stiffness",
@@ -1240,7 +1285,7 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "Syntax",
         "dt",
         "1\nsubsteps = 3",
-        "--set dt=1 substeps = 3: is not valid TOML: unexpected content; write the value as in a scene file, such as 0.5 or [0, 1, 0]",
+        r"--set dt=1\nsubsteps = 3: is not valid TOML: unexpected content; write the value as in a scene file, such as 0.5 or [0, 1, 0]",
     ),
     (
         "UnknownKey",
@@ -1347,8 +1392,37 @@ fn deep_nesting_is_refused() {
         "a.".repeat(100_000) + "a = 1",
         "a = ".to_owned() + &"{a=".repeat(100_000),
     ] {
-        assert!(Scene::parse(&text, "my.toml").is_err());
+        let error = Scene::parse(&text, "my.toml").unwrap_err();
+        assert_eq!((error.code(), error.sentence()), (sprung::Code::Syntax, "is nested too deeply"));
     }
+}
+
+#[test]
+fn a_key_of_very_many_parts_is_refused() {
+    let mut scene = Scene::builtin("jelly").unwrap();
+    for parts in [33, 20_000] {
+        let error = scene.set(&vec!["a"; parts].join("."), "1").unwrap_err();
+        assert_eq!(error.code(), sprung::Code::TooLarge);
+        assert_eq!(error.sentence(), format!("has a key of {parts} parts, and there may be at most 32"));
+    }
+}
+
+#[test]
+fn names_of_bodies_have_a_greatest_length() {
+    let scene = |length| format!("[[body]]\nname = \"{}\"\npoints = [[0, 0, 0]]\n", "é".repeat(length));
+    assert!(Scene::parse(&scene(100), "my.toml").is_ok());
+    assert_eq!(
+        Scene::parse(&scene(101), "my.toml").unwrap_err().to_string(),
+        "my.toml:2:8: body[0].name: has 101 characters, and may have at most 100"
+    );
+}
+
+#[test]
+fn a_file_name_stays_on_its_line() {
+    let error = Scene::parse("dt = -1\n", "my\n\u{1b}[31m.toml").unwrap_err();
+    assert!(error.to_string().starts_with(r"my\n\u{1b}[31m.toml:1:"), "{error}");
+    let error = Scene::from_bytes(b"\xFF", "my\u{202e}.toml").unwrap_err();
+    assert!(error.to_string().starts_with(r"my\u{202e}.toml:1:1:"), "{error}");
 }
 
 #[test]

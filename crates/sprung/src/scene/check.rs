@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use std::ops::RangeInclusive;
 
 use super::choices::{Dt, OneOrEach, Pin};
-use super::suggest::{did_you_mean, shortened};
+use super::suggest::{did_you_mean, shortened, steers};
 use super::types::{Body, Joint, Plane, Scene, Springs};
 use crate::build::Lattice;
 use crate::error::{Code, Error, Result};
@@ -16,6 +16,9 @@ use crate::params::{
 
 /// Points that a scene may have.
 pub const MAX_POINTS: u64 = 50_000_000;
+
+/// Characters that a body's name may have.
+const NAME_LENGTH: usize = 100;
 
 /// Allowed spacings (m) and scales: so small that they are never in the way, and large enough that no division by
 /// them overflows.
@@ -87,10 +90,7 @@ fn check_bodies(scene: &Scene, max_points: u64) -> Result<()> {
     let mut points = 0u64;
     for (index, body) in scene.bodies.iter().enumerate() {
         let path = format!("body[{index}]");
-        if body.name.is_empty() {
-            return Err(Error::new(Code::OutOfRange, "is empty, and must have at least one letter")
-                .at_field(path + ".name"));
-        }
+        check_name(&body.name).map_err(|error| error.at_field(format!("{path}.name")))?;
         if !names.insert(&body.name) {
             let sentence = format!("is \"{}\", which another body is called already", shortened(&body.name));
             return Err(Error::new(Code::Duplicate, sentence).at_field(path + ".name"));
@@ -109,6 +109,26 @@ fn check_bodies(scene: &Scene, max_points: u64) -> Result<()> {
         for (index, springs) in body.springs.iter().enumerate() {
             check_springs(&format!("{path}.springs[{index}]"), springs, body)?;
         }
+    }
+    Ok(())
+}
+
+/// Names come back in messages and plots, so they must be possible to show there.
+fn check_name(name: &str) -> Result<()> {
+    let length = name.chars().count();
+    if length == 0 {
+        return Err(Error::new(Code::OutOfRange, "is empty, and must have at least one letter"));
+    }
+    if length > NAME_LENGTH {
+        let sentence = format!("has {length} characters, and may have at most {NAME_LENGTH}");
+        return Err(Error::new(Code::TooLarge, sentence));
+    }
+    if let Some(letter) = name.chars().find(|&letter| steers(letter)) {
+        let sentence = format!(
+            "has the invisible character {}, and must be made of visible ones",
+            letter.escape_default()
+        );
+        return Err(Error::new(Code::OutOfRange, sentence));
     }
     Ok(())
 }

@@ -1,11 +1,40 @@
 //! Values that may be written in more than one way: each says in one sentence what it accepts.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::params::SUBSTEPS_RANGE;
+
+/// A whole number from `low` to `high`, said with the bounds that hold for it. Numbers out of bounds are left to the
+/// scene's check, save those that no `u32` can hold.
+struct WholeVisitor(RangeInclusive<u32>);
+
+impl Visitor<'_> for WholeVisitor {
+    type Value = u32;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a whole number from {} to {}", self.0.start(), self.0.end())
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<u32, E> {
+        u32::try_from(value).map_err(|_| E::invalid_value(Unexpected::Signed(value), &self))
+    }
+}
+
+/// Reads `substeps`.
+pub(super) fn substeps<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    deserializer.deserialize_u32(WholeVisitor(SUBSTEPS_RANGE))
+}
+
+/// Reads `max_springs`.
+pub(super) fn max_springs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    deserializer.deserialize_u32(WholeVisitor(1..=u32::MAX)).map(Some)
+}
 
 /// Length of one step: a number of seconds, or the word `"auto"`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -45,14 +45,17 @@ impl Scene {
     /// range, names and indices that do not exist, statements that cannot both hold.
     pub fn parse(text: &str, file: &str) -> Result<Self> {
         if text.len() as u64 > MAX_BYTES {
-            return Err(too_many_bytes(text.len() as u64).in_file(file));
+            return Err(too_many_bytes(text.len() as u64).in_file(suggest::one_line(file)));
         }
         if text.trim().is_empty() {
             let error = Error::new(Code::MissingField, "is empty; a scene needs at least one [[body]]");
             return Err(error
                 .with_fix("`sprung new FILE` writes a scene to start from")
-                .in_file(file)
+                .in_file(suggest::one_line(file))
                 .at_line(1, 1));
+        }
+        if let Some(byte) = text.find('\0') {
+            return Err(source::not_text(text, byte, file));
         }
         let origin = Origin::new(file, text);
         let document = DeTable::parse(text).map_err(|error| origin.locate_syntax(&error))?;
@@ -68,7 +71,7 @@ impl Scene {
     /// As [`parse`](Self::parse), and for bytes that are not UTF-8 the line and column of the first bad one.
     pub fn from_bytes(bytes: &[u8], file: &str) -> Result<Self> {
         if bytes.len() as u64 > MAX_BYTES {
-            return Err(too_many_bytes(bytes.len() as u64).in_file(file));
+            return Err(too_many_bytes(bytes.len() as u64).in_file(suggest::one_line(file)));
         }
         match std::str::from_utf8(bytes) {
             Ok(text) => Self::parse(text, file),

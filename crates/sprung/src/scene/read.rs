@@ -157,7 +157,7 @@ fn found_in_words(found: Unexpected<'_>) -> String {
         Unexpected::Bool(value) => value.to_string(),
         Unexpected::Signed(value) => value.to_string(),
         Unexpected::Float(value) => format!("{value:?}"),
-        Unexpected::Str(text) => format!("the text \"{}\"", shortened(text).escape_debug()),
+        Unexpected::Str(text) => format!("the text \"{}\"", shortened(text)),
         Unexpected::Seq => "a list".to_owned(),
         Unexpected::Map => "a table".to_owned(),
         other => other.to_string(),

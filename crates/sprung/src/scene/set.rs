@@ -10,6 +10,9 @@ use super::suggest::{did_you_mean, shortened};
 use super::types::{Body, Scene};
 use crate::error::{Code, Error, Result};
 
+/// Parts that a key may have: more than any scene has levels, and few enough to walk down one by one.
+const MOST_STEPS: usize = 32;
+
 /// Keys that stand for the same key in every group of springs and every joint.
 const SHORTHANDS: [&str; 3] = ["stiffness", "damping", "rest_scale"];
 
@@ -31,19 +34,27 @@ impl Scene {
     /// # Errors
     /// As [`parse`](Self::parse), with `--set KEY=VALUE` as the place; the scene then stays as it was.
     pub fn set(&mut self, key: &str, value: &str) -> Result<()> {
-        let argument = one_line(&format!("--set {}={}", shortened(key), shortened(value)));
+        let argument = format!("--set {}={}", shortened(key), shortened(value));
         self.changed(key, value, &argument)
             .map(|scene| *self = scene)
             .map_err(|error| error.in_file(argument))
     }
 
     fn changed(&self, key: &str, value: &str, argument: &str) -> Result<Self> {
-        let value = parse_value(value)?;
+        let value = parse_value(value).map_err(|error| match error.code() {
+            Code::OutOfRange => error.at_field(shortened(key)),
+            _ => error,
+        })?;
         let mut table = Table::try_from(self).map_err(|error| {
             Error::new(Code::Unsupported, format!("the scene cannot be changed: {error}"))
         })?;
         let mut fields = Vec::new();
         let steps: Vec<&str> = key.split('.').collect();
+        if steps.len() > MOST_STEPS {
+            let sentence =
+                format!("has a key of {} parts, and there may be at most {MOST_STEPS}", steps.len());
+            return Err(Error::new(Code::TooLarge, sentence));
+        }
         match steps[..] {
             _ if steps.iter().any(|step| step.is_empty()) => {
                 let sentence = "needs a key, a name such as dt or names joined by dots such as plane.y";
@@ -66,8 +77,9 @@ impl Scene {
             _ => put_in_table(&mut table, &steps, &value, "", &mut fields)?,
         }
         if fields.is_empty() {
-            return Err(Error::new(Code::NotFound, "the scene has nothing of that name")
-                .at_field(one_line(&shortened(key))));
+            return Err(
+                Error::new(Code::NotFound, "the scene has nothing of that name").at_field(shortened(key))
+            );
         }
         // Read back as a file is read, so that every check is made and every error is worded the same.
         let text = toml::to_string(&table).map_err(|error| Error::new(Code::Syntax, error.to_string()))?;
@@ -84,21 +96,22 @@ fn unknown_key(key: &str) -> Error {
     let allowed = [keys_of::<Scene>(), &SHORTHANDS].concat();
     let error =
         Error::new(Code::UnknownKey, format!("is not a known key; allowed here are {}", allowed.join(", ")));
-    let error = error.at_field(one_line(&shortened(key)));
+    let error = error.at_field(shortened(key));
     match did_you_mean(key, allowed.iter().copied()) {
         Some(fix) => error.with_fix(fix),
         None => error,
     }
 }
 
-/// Without line breaks, to be quoted as a place.
-fn one_line(text: &str) -> String {
-    text.replace(char::is_control, " ")
-}
-
 /// A value in TOML syntax. A shell takes quotes away, so a single word counts as text.
 fn parse_value(text: &str) -> Result<Value> {
     let is_word = !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
+    // A number too large for a float is not TOML, but it is no word either.
+    let is_number = text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    if is_number && text.parse::<f64>().is_ok_and(f64::is_infinite) {
+        let sentence = format!("is {}, and must be a finite number", shortened(text));
+        return Err(Error::new(Code::OutOfRange, sentence));
+    }
     match text.parse::<Value>() {
         Ok(value) => Ok(value),
         Err(_) if is_word => Ok(Value::String(text.to_owned())),
@@ -116,7 +129,8 @@ fn put_in_table(
     fields: &mut Vec<String>,
 ) -> Result<()> {
     let Some((&step, rest)) = steps.split_first() else { return Ok(()) };
-    let field = if path.is_empty() { step.to_owned() } else { format!("{path}.{step}") };
+    let name = shortened(step);
+    let field = if path.is_empty() { name } else { format!("{path}.{name}") };
     if rest.is_empty() {
         table.insert(step.to_owned(), value.clone());
         fields.push(field);
@@ -124,9 +138,10 @@ fn put_in_table(
     }
     match table.get_mut(step) {
         Some(inner) => put(inner, rest, value, &field, fields),
-        None if ["plane", "joint", "springs", "pins"].contains(&step) => {
-            Err(Error::new(Code::NotFound, "is not in this scene").at_field(field))
-        }
+        None if ["plane", "joint", "springs", "pins"].contains(&step) => Err(match path {
+            "" => Error::new(Code::NotFound, format!("this scene has no {step}")),
+            _ => Error::new(Code::NotFound, format!("has no {step}")).at_field(path),
+        }),
         None => {
             // A table that the scene leaves out, such as rotation; the reader refuses it if there is no such key.
             let mut inner = Table::new();
@@ -189,8 +204,7 @@ fn check_body_step(bodies: &[Value], step: &str) -> Result<()> {
     let all = names().collect::<Vec<_>>().join(", ");
     let sentence =
         format!("is neither a body's name nor a key of bodies; the bodies are {}", shortened(&all));
-    let error =
-        Error::new(Code::UnknownKey, sentence).at_field(format!("body.{}", one_line(&shortened(step))));
+    let error = Error::new(Code::UnknownKey, sentence).at_field(format!("body.{}", shortened(step)));
     Err(match did_you_mean(step, names().chain(keys.iter().copied())) {
         Some(fix) => error.with_fix(fix),
         None => error,

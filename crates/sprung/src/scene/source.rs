@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
 use super::read::ReadError;
-use super::suggest::shortened;
+use super::suggest::{one_line, shortened};
 use crate::error::{Code, Error};
 
 /// The source of a scene, if it has one. It is no part of what the scene says: any two are equal.
@@ -35,7 +35,7 @@ struct Override {
 
 impl Origin {
     pub(super) fn new(file: &str, text: &str) -> Self {
-        Self(Some(Arc::new(Source { file: file.to_owned(), text: text.into(), overrides: Vec::new() })))
+        Self(Some(Arc::new(Source { file: one_line(file), text: text.into(), overrides: Vec::new() })))
     }
 
     /// The same source, with these fields changed by an argument such as `--set dt=0.1`.
@@ -83,7 +83,7 @@ impl Origin {
 pub(super) fn syntax_error(error: &toml::de::Error, text: &str) -> Error {
     let span = error.span().unwrap_or(0..0);
     let rest = text.get(span.start..).unwrap_or_default();
-    let message = error.message().lines().map(str::trim).collect::<Vec<_>>().join(", ");
+    let message = one_line(&error.message().lines().map(str::trim).collect::<Vec<_>>().join(", "));
     if message.starts_with("duplicate key") {
         let key = shortened(text.get(span.clone()).unwrap_or_default());
         let error = Error::new(Code::Duplicate, "is said a second time in the same table");
@@ -105,6 +105,8 @@ pub(super) fn syntax_error(error: &toml::de::Error, text: &str) -> Error {
             Error::new(Code::Syntax, sentence)
         }
         "" => Error::new(Code::Syntax, "is not valid TOML"),
+        // The parser's own words for this are about how it is made.
+        message if message.contains("recurs") => Error::new(Code::Syntax, "is nested too deeply"),
         message => Error::new(
             Code::Syntax,
             format!("is not valid TOML: {}", message.trim_end_matches(", expected nothing")),
@@ -161,12 +163,18 @@ fn span_of(text: &str, field: &str) -> Option<Range<usize>> {
     Some(here.span())
 }
 
+/// An error about a NUL byte, which other kinds of files have and no text has.
+pub(super) fn not_text(text: &str, byte: usize, file: &str) -> Error {
+    let sentence = "has a byte that is not text here (NUL); is this a TOML file?";
+    at_byte(Error::new(Code::Syntax, sentence).in_file(one_line(file)), text, byte)
+}
+
 /// An error about bytes that are not UTF-8, at the first bad one.
 pub(super) fn not_utf8(bytes: &[u8], valid: usize, file: &str) -> Error {
     let bad = bytes.get(valid).copied().unwrap_or_default();
     let error = Error::new(Code::Syntax, format!("is not UTF-8 text: it has the byte 0x{bad:02X} here"))
         .with_fix("save the file as UTF-8")
-        .in_file(file);
+        .in_file(one_line(file));
     let text = String::from_utf8_lossy(&bytes[..valid]);
     at_byte(error, &text, text.len())
 }

@@ -30,11 +30,32 @@ pub(super) fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = 
     closest(name, candidates).map(|candidate| format!("did you mean \"{candidate}\"?"))
 }
 
-/// What was typed, short enough to be quoted in a sentence.
+/// What was typed, fit to be quoted in a sentence: short, and on one line of a terminal.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST {
-        return text.to_owned();
+        return one_line(text);
     }
-    text.chars().take(MOST).chain(['…']).collect()
+    one_line(&text.chars().take(MOST).chain(['…']).collect::<String>())
+}
+
+/// A text without characters that steer a terminal: those are written as `\n` or `\u{1b}`.
+pub(super) fn one_line(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match steers(letter) {
+            true => line.extend(letter.escape_default()),
+            false => line.push(letter),
+        }
+    }
+    line
+}
+
+/// Whether a character is not shown but changes what is: a control character, a line break, or one of those that turn
+/// the direction of the text around them.
+pub(super) fn steers(letter: char) -> bool {
+    letter.is_control()
+        || matches!(letter, '\u{61c}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{feff}')
+        || ('\u{2028}'..='\u{202e}').contains(&letter)
+        || ('\u{2060}'..='\u{206f}').contains(&letter)
 }

@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::choices::{Dt, OneOrEach, Pin};
+use super::choices::{Dt, OneOrEach, Pin, max_springs, substeps};
 use super::source::Origin;
 use crate::build::SpringKind;
 use crate::contact::ContactLaw;
@@ -24,14 +24,14 @@ pub struct Scene {
     #[serde(default)]
     pub dt: Dt,
     /// Steps for each displayed frame. Default: 1.
-    #[serde(default = "one_substep")]
+    #[serde(default = "one_substep", deserialize_with = "substeps")]
     #[schemars(range(min = 1, max = 1_000_000))]
     pub substeps: u32,
     /// Gravitational acceleration, m/s². Default: [0, -9.81, 0].
     #[serde(default = "standard_gravity")]
     pub gravity: [f64; 3],
     /// How many springs the scene may have. Only a scene of over 20 million has to say it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "max_springs")]
     #[schemars(range(min = 1))]
     pub max_springs: Option<u32>,
     /// Ground planes. Default: none.
