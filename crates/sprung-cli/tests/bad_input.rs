@@ -110,6 +110,8 @@ fn outputs_that_cannot_be_written() {
     assert!(line.starts_with("a.csv:"), "the same output twice: {line}");
     let line = complaint(folder.path(), &["run", "spring", "-o", "a.csv", "--plot", "b.txt"]);
     assert!(line.starts_with("b.txt:") && line.contains("svg"), "{line}");
+    let line = complaint(folder.path(), &["run", "spring", "-o", "same.png", "--plot", "same.png"]);
+    assert!(line.starts_with("same.png: cannot be written: another output"), "{line}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left but the folder");
 }
 

@@ -57,3 +57,34 @@ fn outputs_replace_no_pipe() {
     }
     assert_eq!(names_in(folder.path()), ["a.csv", "b.gif.partial", "c.svg"]);
 }
+
+/// Puts a program called ffmpeg before all others and runs a film with it; gives what was said.
+fn film_with(folder: &Path, script: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let bin = folder.join("bin");
+    fs::create_dir_all(&bin).unwrap();
+    let program = bin.join("ffmpeg");
+    fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default());
+    let output = Command::new(env!("CARGO_BIN_EXE_sprung"))
+        .current_dir(folder)
+        .env("PATH", path)
+        .args(["run", "spring", "--frames", "2", "--size", "64x64", "-o", "a.mp4"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(names_in(folder), ["bin"]);
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn an_ffmpeg_that_does_not_do_its_work_is_told() {
+    let folder = TempDir::new().unwrap();
+    let said = film_with(folder.path(), "cat > /dev/null");
+    assert!(said.contains("a.mp4: cannot be written: ffmpeg wrote an empty file"), "{said}");
+    let said = film_with(folder.path(), "exit 7");
+    assert!(said.contains("the one on this machine does not work"), "{said}");
+    let said = film_with(folder.path(), "exec sleep 60");
+    assert!(said.contains("the one on this machine did not answer in 10 s"), "{said}");
+}

@@ -58,11 +58,8 @@ fn main() -> sprung::Result<()> {
         );
     }
     for name in ["energy.svg", "energy.png"] {
-        sprung_render::plot::energy(
-            &Path::new(&folder).join(name),
-            "Energy of a mass on a spring",
-            &energies(),
-        )?;
+        let plot = sprung_render::plot::EnergyPlot::begin(&Path::new(&folder).join(name))?;
+        plot.finish("Energy of a mass on a spring", &energies())?;
     }
     Ok(())
 }

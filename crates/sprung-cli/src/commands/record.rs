@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use sprung::{Energy, Params, Result, Simulation, Snapshot};
 use sprung_io::{Export, Frame, Options, RunInfo, Written};
-use sprung_render::{export, plot};
+use sprung_render::export;
+use sprung_render::plot::EnergyPlot;
 
 use crate::console;
 
@@ -22,7 +23,7 @@ struct Held {
 /// All outputs of a run.
 pub struct Recorder {
     exports: Vec<Box<dyn Export>>,
-    plot: Option<PathBuf>,
+    plot: Option<EnergyPlot>,
     title: String,
     samples: Vec<(f64, Energy)>,
     held: Vec<Held>,
@@ -39,13 +40,12 @@ impl Recorder {
         options: &Options,
     ) -> Result<Self> {
         let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
-        if let Some(path) = plot {
-            plot::check(path)?;
-        }
         let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
         let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;
+        // After the exports: an output that is asked for twice is refused, whatever it would hold.
+        let plot = plot.map(|path| EnergyPlot::begin(path)).transpose()?;
         let title = format!("Energy: {}", info.title);
-        Ok(Self { exports, plot: plot.cloned(), title, samples: Vec::new(), held: Vec::new(), frames: 0 })
+        Ok(Self { exports, plot, title, samples: Vec::new(), held: Vec::new(), frames: 0 })
     }
 
     /// Takes the current state as frame `index`.
@@ -94,8 +94,8 @@ impl Recorder {
                 Err(error) => outcome = outcome.and(Err(error)),
             }
         }
-        if let Some(path) = &self.plot {
-            match plot::energy(path, &self.title, &self.samples) {
+        if let Some(plot) = self.plot {
+            match plot.finish(&self.title, &self.samples) {
                 Ok(file) => written.push(file),
                 Err(error) => outcome = outcome.and(Err(error)),
             }

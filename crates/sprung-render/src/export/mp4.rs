@@ -3,6 +3,7 @@
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use sprung::{Code, Error, Result};
 use sprung_io::files::write_error;
@@ -15,25 +16,42 @@ use super::spool::Spool;
 /// A film.
 pub const MP4: Exporter = Exporter { ending: "mp4", description: "a film (needs ffmpeg)", open };
 
+/// How long ffmpeg may take to tell its version.
+const PATIENCE: Duration = Duration::from_secs(10);
+
 /// Frames per second that players cope with.
 const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     // Asked before the simulation, which may take long, and not after it.
-    let answer = Command::new("ffmpeg")
-        .arg("-version")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .status();
-    if !answer.is_ok_and(|status| status.success()) {
-        let error =
-            Error::new(Code::Unsupported, "a film is encoded by ffmpeg, and there is none on this machine");
+    if let Err(why) = probe(PATIENCE) {
+        let error = Error::new(Code::Unsupported, format!("a film is encoded by ffmpeg, and {why}"));
         return Err(error.with_fix("install ffmpeg, or write a .gif").in_file(path.display().to_string()));
     }
     // The colour of two by two pixels is stored together, so both sides must be even.
     let size = picture_size(path, options, [1280, 720])?.map(|side| side & !1);
     Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
+}
+
+/// Asks ffmpeg for its version; otherwise says why there is none to be had.
+fn probe(patience: Duration) -> Result<(), String> {
+    let none = |_| "there is none on this machine".to_owned();
+    let mut command = Command::new("ffmpeg");
+    command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = command.spawn().map_err(none)?;
+    let deadline = Instant::now() + patience;
+    loop {
+        match child.try_wait().map_err(none)? {
+            Some(status) if status.success() => return Ok(()),
+            Some(status) => return Err(format!("the one on this machine does not work ({status})")),
+            None if Instant::now() < deadline => std::thread::sleep(Duration::from_millis(5)),
+            None => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(format!("the one on this machine did not answer in {} s", patience.as_secs()));
+            }
+        }
+    }
 }
 
 struct Film {
@@ -79,6 +97,10 @@ impl Export for Film {
                 return Err(Error::new(Code::Unwritable, sentence).in_file(path.display().to_string()));
             }
             _ => drawn?,
+        }
+        if std::fs::metadata(file.partial_path()).is_ok_and(|film| film.len() == 0) {
+            let error = Error::new(Code::Unwritable, "cannot be written: ffmpeg wrote an empty file");
+            return Err(error.in_file(path.display().to_string()));
         }
         let bytes = file.finish()?;
         Ok(Written { path, bytes, frames: frames.len() as u64 })

@@ -17,29 +17,40 @@ use chart::{Chart, Curve};
 /// Size of the plot: pixels of a `.png` at half its scale, user units of an `.svg`.
 const SIZE: [u32; 2] = [960, 540];
 
-/// Checks, before a run is begun for it, that a plot of this name can be written: its ending and its folder.
-///
-/// # Errors
-/// [`Code::Unsupported`] for another ending than `.svg` or `.png`, [`Code::Unwritable`] for a folder that is not there.
-pub fn check(path: &Path) -> Result<()> {
-    ending(path)?;
-    // Begun and dropped at once, it leaves nothing behind.
-    PartialFile::create(path).map(drop)
+/// A plot whose file is begun with the run, so that a name that cannot be written is known before anything is
+/// simulated. Dropped unfinished, it leaves nothing behind.
+#[derive(Debug)]
+pub struct EnergyPlot {
+    file: PartialFile,
+    is_vector: bool,
 }
 
-/// Draws the energies of a run: (time in s, energy in J) for each sample.
-///
-/// # Errors
-/// Those of [`check`], and [`Code::Unwritable`] if the disk is full.
-pub fn energy(path: &Path, title: &str, samples: &[(f64, Energy)]) -> Result<Written> {
-    let vector = ending(path)? == "svg";
-    let sheet = Chart { title: title.to_owned(), curves: curves(samples) }.draw(SIZE);
-    let mut file = PartialFile::create(path)?;
-    let written =
-        if vector { file.write_all(sheet.svg().as_bytes()) } else { write_png(&mut file, &sheet.image(2)) };
-    written.map_err(|error| write_error(path, &error))?;
-    let bytes = file.finish()?;
-    Ok(Written { path: path.to_owned(), bytes, frames: samples.len() as u64 })
+impl EnergyPlot {
+    /// Begins the plot, by its ending as `.svg` or `.png`.
+    ///
+    /// # Errors
+    /// [`Code::Unsupported`] for another ending, and [`Code::Unwritable`] as [`PartialFile::create`].
+    pub fn begin(path: &Path) -> Result<Self> {
+        let is_vector = ending(path)? == "svg";
+        Ok(Self { file: PartialFile::create(path)?, is_vector })
+    }
+
+    /// Draws the energies of a run: (time in s, energy in J) for each sample.
+    ///
+    /// # Errors
+    /// [`Code::Unwritable`], if the disk is full; nothing is left of the plot then.
+    pub fn finish(self, title: &str, samples: &[(f64, Energy)]) -> Result<Written> {
+        let Self { mut file, is_vector } = self;
+        let path = file.path().to_owned();
+        let sheet = Chart { title: title.to_owned(), curves: curves(samples) }.draw(SIZE);
+        let written = match is_vector {
+            true => file.write_all(sheet.svg().as_bytes()),
+            false => write_png(&mut file, &sheet.image(2)),
+        };
+        written.map_err(|error| write_error(&path, &error))?;
+        let bytes = file.finish()?;
+        Ok(Written { path, bytes, frames: samples.len() as u64 })
+    }
 }
 
 fn ending(path: &Path) -> Result<String> {
@@ -98,7 +109,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         for (name, begin) in [("e.svg", &b"<svg"[..]), ("e.PNG", &b"\x89PNG"[..])] {
             let path = folder.path().join(name);
-            let written = energy(&path, "Energy <of> \"a & b\"", &samples()).expect("it can be written");
+            let plot = EnergyPlot::begin(&path).expect("it can be begun");
+            let written = plot.finish("Energy <of> \"a & b\"", &samples()).expect("it can be written");
             let bytes = std::fs::read(&path).expect("it was written");
             assert!(bytes.starts_with(begin));
             assert_eq!(written.bytes, bytes.len() as u64);
@@ -118,16 +130,21 @@ mod tests {
         let path = folder.path().join("e.png");
         let wild = Energy { kinetic: f64::NAN, elastic: f64::INFINITY, ..Energy::default() };
         for samples in [vec![], vec![(0.0, Energy::default())], vec![(0.0, wild), (1.0, wild)]] {
-            energy(&path, "odd", &samples).expect("it can be written");
+            let plot = EnergyPlot::begin(&path).expect("it can be begun");
+            plot.finish("odd", &samples).expect("it can be written");
         }
     }
 
     #[test]
-    fn names_are_checked_before_a_run() {
+    fn the_place_is_claimed_before_the_run() {
         let folder = tempfile::tempdir().expect("a folder");
-        assert_eq!(check(&folder.path().join("e.svg")), Ok(()));
+        let path = folder.path().join("e.svg");
+        let code = |path: &Path| EnergyPlot::begin(path).map(drop).map_err(|error| error.code());
+        let plot = EnergyPlot::begin(&path).expect("it can be begun");
+        assert_eq!(code(&path), Err(Code::Unwritable), "it is being written already");
+        drop(plot);
+        assert_eq!(code(&path), Ok(()));
         assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 0);
-        let code = |path: &Path| check(path).map_err(|error| error.code());
         assert_eq!(code(Path::new("e.pdf")), Err(Code::Unsupported));
         assert_eq!(code(Path::new("e")), Err(Code::Unsupported));
         assert_eq!(code(&folder.path().join("none/e.svg")), Err(Code::Unwritable));
