@@ -167,29 +167,6 @@ fn settled_scenes_hardly_move() {
     }
 }
 
-#[cfg(unix)]
-#[test]
-fn ctrl_c_keeps_what_was_done_so_far() {
-    let folder = TempDir::new().unwrap();
-    let child = Command::new(env!("CARGO_BIN_EXE_sprung"))
-        .current_dir(folder.path())
-        .args(["run", "jelly", "-o", "a.csv", "--seconds", "100000"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    while std::fs::metadata(folder.path().join("a.csv.partial")).map_or(0, |file| file.len()) == 0 {
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(killed.success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-    assert!(stderr(&output).contains("interrupted; the"), "{}", stderr(&output));
-    assert_eq!(names(folder.path()), ["a.csv"]);
-    let csv = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
-    assert!(frames(&csv).iter().all(|&(_, rows)| rows == 1000), "whole frames only");
-}
-
 #[test]
 fn threads_change_nothing() {
     let folder = TempDir::new().unwrap();

@@ -5,5 +5,5 @@
 pub mod export;
 pub mod files;
 
-pub use export::{Export, Exporter, Frame, Options, RunInfo, Written};
+pub use export::{Export, Exporter, Frame, Options, Progress, RunInfo, Written};
 pub use files::PartialFile;

@@ -4,6 +4,7 @@
 #[path = "../tests/scenes/mod.rs"]
 mod scenes;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -49,7 +50,7 @@ fn main() -> sprung::Result<()> {
             let params = &motion.info.params;
             output.frame(&Frame { index: index as u64, snapshot, params, energy: None })?;
         }
-        let written = output.finish(&mut |_| {})?;
+        let written = output.finish(&mut |_| ControlFlow::Continue(()))?;
         println!(
             "{}: {} bytes, {:.2} s",
             written.path.display(),

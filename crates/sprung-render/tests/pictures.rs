@@ -4,6 +4,7 @@
 
 mod scenes;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use sprung::Snapshot;
@@ -23,7 +24,7 @@ fn write(path: &Path, motion: &Motion, moments: &[Snapshot], options: &Options) 
         let params = &motion.info.params;
         output.frame(&Frame { index: index as u64, snapshot, params, energy: None })?;
     }
-    output.finish(&mut |_| {})
+    output.finish(&mut |_| ControlFlow::Continue(()))
 }
 
 fn read(path: &Path) -> Option<(u32, u32, Vec<u8>)> {
@@ -126,6 +127,14 @@ fn every_exporter_keeps_its_promises() {
         if ["csv", "npz"].contains(&exporter.ending) {
             continue;
         }
+        // Broken off while it is drawn it leaves nothing, and what was there before stays.
+        let mut output = open().expect("it can be begun");
+        output.frame(&frame).expect("it takes a frame");
+        let error = output.finish(&mut |_| ControlFlow::Break(())).expect_err("broken off");
+        let sentence = format!("interrupted while {} was being drawn; it is not kept", path.display());
+        assert_eq!((error.code(), error.to_string()), (sprung::Code::Interrupted, sentence));
+        assert_eq!(names(), [format!("out.{}", exporter.ending)]);
+        assert_eq!(std::fs::metadata(&path).expect("it is there").len(), bytes);
         // A picture of no frame at all cannot be made.
         assert!(write(&path, &motion, &[], &options).is_err());
         let tiny = Options { size: Some([3, 3]), at: None };

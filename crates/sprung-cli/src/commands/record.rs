@@ -1,13 +1,15 @@
 //! The outputs of one run: every frame goes to all of them once it is known to be good.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use sprung::{Energy, Params, Result, Simulation, Snapshot};
+use sprung::{Energy, Error, Params, Result, Simulation, Snapshot};
 use sprung_io::{Export, Frame, Options, RunInfo, Written};
 use sprung_render::export;
 use sprung_render::plot::EnergyPlot;
 
 use crate::console;
+use crate::interrupt::Interrupt;
 
 /// Steps after which the watch has either found a suspect state good or called it a blow-up.
 const STEPS_TO_A_VERDICT: usize = 64;
@@ -28,7 +30,7 @@ pub struct Recorder {
     samples: Vec<(f64, Energy)>,
     held: Vec<Held>,
     /// Whole frames recorded so far.
-    pub frames: u64,
+    frames: u64,
 }
 
 impl Recorder {
@@ -64,6 +66,9 @@ impl Recorder {
 
     /// After the last frame: goes on, on a copy, until frames that are held back are known to be good.
     pub fn settle_doubts(&mut self, simulation: &Simulation) -> Result<()> {
+        if self.held.is_empty() {
+            return Ok(());
+        }
         let mut ahead = simulation.clone();
         for _ in 0..STEPS_TO_A_VERDICT {
             if self.held.is_empty() {
@@ -77,30 +82,40 @@ impl Recorder {
         self.release()
     }
 
-    /// Completes all files with the whole frames they have; the first error, if any, comes with what was written.
-    pub fn finish(self, quiet: bool) -> (Vec<Written>, Result<()>) {
-        let mut written = Vec::new();
-        let mut outcome = Ok(());
+    /// Completes all files with the whole frames they have; gives what was written and what went wrong.
+    ///
+    /// Ctrl-C breaks off the drawing of pictures, but not when it was pressed before: it ended the simulation then, and
+    /// what was recorded until then is to be kept.
+    pub fn finish(self, interrupt: &Interrupt, quiet: bool) -> (Vec<Written>, Vec<Error>) {
+        let (mut written, mut errors) = (Vec::new(), Vec::new());
         if self.frames == 0 {
             // Dropped, they leave nothing behind.
-            return (written, outcome);
+            return (written, errors);
         }
+        let came_before = interrupt.came();
         for export in self.exports {
             let bar = console::progress(1000, "writing", quiet);
-            let finished = export.finish(&mut |share| bar.set_position((1000.0 * share) as u64));
+            let finished = export.finish(&mut |share| {
+                bar.set_position((1000.0 * share) as u64);
+                if interrupt.came() && !came_before {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
             bar.finish_and_clear();
             match finished {
                 Ok(file) => written.push(file),
-                Err(error) => outcome = outcome.and(Err(error)),
+                Err(error) => errors.push(error),
             }
         }
         if let Some(plot) = self.plot {
             match plot.finish(&self.title, &self.samples) {
                 Ok(file) => written.push(file),
-                Err(error) => outcome = outcome.and(Err(error)),
+                Err(error) => errors.push(error),
             }
         }
-        (written, outcome)
+        (written, errors)
     }
 
     fn release(&mut self) -> Result<()> {

@@ -7,12 +7,12 @@ use sprung::scene::Scene;
 use sprung::{
     Change, Code, Error, Params, Result, SettleOptions, Simulation, significant as rounded, stability,
 };
-use sprung_io::{Options, RunInfo};
+use sprung_io::{Options, RunInfo, Written};
 
 use super::record::Recorder;
 use super::show::describe;
 use crate::args::RunArgs;
-use crate::console::{bytes, counted, grouped, note, progress, say, seconds};
+use crate::console::{bytes, complain, counted, grouped, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
 use crate::source;
 
@@ -51,8 +51,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     let simulated_in = begun.elapsed();
 
     // Whatever happened: the whole frames that there are become whole files.
-    let frames = recorder.frames;
-    let (written, finished) = recorder.finish(args.quiet);
+    let (written, mut errors) = recorder.finish(&interrupt, args.quiet);
     if !args.quiet {
         for file in &written {
             let path = file.path.display();
@@ -60,15 +59,16 @@ pub fn run(args: &RunArgs) -> Result<()> {
         }
     }
     if let Err(error) = outcome {
-        return Err(if error.code() == Code::Interrupted { interrupted(frames) } else { error });
+        let stopped = error.code() == Code::Interrupted;
+        errors.insert(0, if stopped { interrupted(&written) } else { error });
     }
-    finished?;
+    all_said(errors)?;
     if !args.quiet {
         let state = simulation.state();
         let pace = state.time / simulated_in.as_secs_f64().max(1e-9);
         say(format_args!(
             "{name}: {} frames, {} steps, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
-            grouped(frames),
+            grouped(plan.frames + 1),
             grouped(state.step),
             rounded(state.time),
             seconds(simulated_in),
@@ -202,9 +202,30 @@ fn warn_of_large_dt(simulation: &Simulation) {
     }
 }
 
-fn interrupted(frames: u64) -> Error {
-    Error::new(
-        Code::Interrupted,
-        format!("interrupted; the {} recorded until then are kept", counted(frames, "frame")),
-    )
+/// What Ctrl-C left: `interrupted; 12 frames are kept in a.csv, 1 frame in b.png`.
+fn interrupted(written: &[Written]) -> Error {
+    let mut sentence = "interrupted".to_owned();
+    for (number, file) in written.iter().enumerate() {
+        let verb = match (number, file.frames) {
+            (0, 1) => "is kept ",
+            (0, _) => "are kept ",
+            _ => "",
+        };
+        let separator = if number == 0 { ";" } else { "," };
+        let frames = counted(file.frames, "frame");
+        sentence += &format!("{separator} {frames} {verb}in {}", file.path.display());
+    }
+    Error::new(Code::Interrupted, sentence)
+}
+
+/// Complains of every error but one, and gives that one back to be told last: the user's own Ctrl-C if it is among
+/// them, as it decides the exit status, or else the first.
+fn all_said(mut errors: Vec<Error>) -> Result<()> {
+    if errors.is_empty() {
+        return Ok(());
+    }
+    let chosen = errors.iter().position(|error| error.code() == Code::Interrupted).unwrap_or(0);
+    let last = errors.remove(chosen);
+    errors.iter().for_each(complain);
+    Err(last)
 }

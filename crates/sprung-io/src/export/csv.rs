@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sprung::{Result, Snapshot};
 
-use super::{Export, Exporter, Frame, Options, RunInfo, Written};
+use super::{Export, Exporter, Frame, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, write_error};
 
 /// `.csv`: a table of positions and velocities. Numbers read back to the same float32, times to the same float64.
@@ -36,7 +36,7 @@ impl Export for CsvExport {
         Ok(())
     }
 
-    fn finish(mut self: Box<Self>, _progress: &mut dyn FnMut(f64)) -> Result<Written> {
+    fn finish(mut self: Box<Self>, _: &mut Progress<'_>) -> Result<Written> {
         let path = self.file.path().to_owned();
         self.file.roll_back().map_err(|error| write_error(&path, &error))?;
         Ok(Written { bytes: self.file.finish()?, path, frames: self.frames })

@@ -4,6 +4,7 @@ mod csv;
 mod npz;
 mod stored_zip;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -73,12 +74,17 @@ pub trait Export {
     fn frame(&mut self, frame: &Frame<'_>) -> Result<()>;
 
     /// Completes the file with the whole frames taken so far and gives it its name.
-    /// `progress` hears the share done, 0 to 1, where there is still work to do.
+    ///
+    /// `progress` hears the share done, 0 to 1, where there is still work to do. When it breaks off, a format that still
+    /// has pictures to draw gives up and leaves nothing behind; one that only has to close its file goes on.
     ///
     /// # Errors
-    /// As [`frame`](Export::frame).
-    fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written>;
+    /// As [`frame`](Export::frame), and [`sprung::Code::Interrupted`] if `progress` broke off.
+    fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written>;
 }
+
+/// Hears the share done, 0 to 1, and says whether to go on.
+pub type Progress<'a> = dyn FnMut(f64) -> ControlFlow<()> + 'a;
 
 /// A format: its ending, what it is, and how to begin a file of it.
 #[derive(Clone, Copy)]

@@ -1,6 +1,7 @@
 //! A small model and made-up frames of it, for the tests of exporters.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -59,6 +60,11 @@ pub fn give(export: &mut dyn Export, run: &RunInfo, index: u64) -> Result<()> {
     let snapshot = snapshot(run.model.point_count(), index);
     let params: &Params = &run.params;
     export.frame(&Frame { index, snapshot: &snapshot, params, energy: None })
+}
+
+/// Progress that nobody breaks off.
+pub fn to_the_end(_: f64) -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }
 
 /// The names of the files in a folder, sorted.

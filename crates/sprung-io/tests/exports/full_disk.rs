@@ -9,7 +9,7 @@ use std::process::Command;
 use sprung::Code;
 use sprung_io::export::{CSV, NPZ};
 
-use crate::common::{begin, give, names_in, run_of, snapshot};
+use crate::common::{begin, give, names_in, run_of, snapshot, to_the_end};
 use crate::npz;
 
 const POINTS: usize = 1000;
@@ -47,7 +47,7 @@ fn fill(exporter: sprung_io::Exporter, path: &Path, sentence: &str) -> u64 {
     assert_eq!((error.code(), error.sentence()), (Code::Unwritable, sentence));
     // The disk is still full: the next frame does not fit either, and does no harm.
     assert!(give(&mut *export, &run, frames).is_err());
-    let written = export.finish(&mut |_| {}).expect("whole frames are kept");
+    let written = export.finish(&mut to_the_end).expect("whole frames are kept");
     assert_eq!(written.frames, frames);
     assert!(frames > 10, "only {frames} frames");
     frames
@@ -117,7 +117,7 @@ fn child_under_a_size_limit() {
     let run = run_of(POINTS);
     let mut export = begin(NPZ, &folder().join("a.npz"), &run, 100).expect("these fit, each in its file");
     assert!((100..10_000).any(|frame| give(&mut *export, &run, frame).is_err()));
-    let error = export.finish(&mut |_| {}).expect_err("too large together");
+    let error = export.finish(&mut to_the_end).expect_err("too large together");
     assert_eq!(error.sentence(), sentence);
     assert_eq!(names_in(&folder()), ["a.csv"]);
 }

@@ -1,13 +1,14 @@
 //! Exports read back, and what is left behind when they end early.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use sprung::{Code, Vec3};
 use sprung_io::export::{CSV, NPZ};
 use sprung_io::{Exporter, Options, PartialFile};
 
-use crate::common::{begin, names_in, run_of, snapshot};
+use crate::common::{begin, names_in, run_of, snapshot, to_the_end};
 use crate::npz;
 
 const TABLES: [Exporter; 2] = [CSV, NPZ];
@@ -21,7 +22,7 @@ fn a_csv_file_reads_back_to_the_same_bits() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("a.csv");
     let run = run_of(5);
-    let written = begin(CSV, &path, &run, 4).expect("written").finish(&mut |_| {}).expect("written");
+    let written = begin(CSV, &path, &run, 4).expect("written").finish(&mut to_the_end).expect("written");
 
     assert_eq!((written.frames, &written.path), (4, &path));
     let text = fs::read_to_string(&path).expect("text");
@@ -52,7 +53,12 @@ fn an_npz_file_reads_back_to_the_same_bits() {
     let run = run_of(points);
     let mut heard = Vec::new();
     let export = begin(NPZ, &path, &run, frames).expect("written");
-    let written = export.finish(&mut |share| heard.push(share)).expect("written");
+    // It has nothing to draw, so it goes on when asked to break off.
+    let mut listen = |share| {
+        heard.push(share);
+        ControlFlow::Break(())
+    };
+    let written = export.finish(&mut listen).expect("written");
 
     assert_eq!(written.frames, frames);
     assert_eq!(written.bytes, fs::metadata(&path).expect("the file is there").len());
@@ -86,7 +92,7 @@ fn the_same_frames_make_the_same_file() {
     for exporter in TABLES {
         let [first, second] = ["1", "2"].map(|name| {
             let path = folder.path().join(name).with_extension(exporter.ending);
-            begin(exporter, &path, &run_of(9), 3).expect("written").finish(&mut |_| {}).expect("written");
+            begin(exporter, &path, &run_of(9), 3).expect("written").finish(&mut to_the_end).expect("written");
             fs::read(path).expect("the file is there")
         });
         assert!(first == second, "{} files differ", exporter.ending);
@@ -99,7 +105,7 @@ fn a_run_without_frames_or_springs_makes_a_file_too() {
     for exporter in TABLES {
         let path = folder.path().join("a").with_extension(exporter.ending);
         let written =
-            begin(exporter, &path, &run_of(1), 0).expect("written").finish(&mut |_| {}).expect("written");
+            begin(exporter, &path, &run_of(1), 0).expect("written").finish(&mut to_the_end).expect("written");
         assert_eq!(written.frames, 0);
     }
     let path = folder.path().join("a.npz");
@@ -135,7 +141,7 @@ fn two_runs_do_not_write_to_one_file() {
         let error = begin(exporter, &path, &run, 0).err().expect("refused");
         assert_eq!(error.code(), Code::Unwritable);
         assert_eq!(error.sentence(), "cannot be written: another output is being written there");
-        first.finish(&mut |_| {}).expect("the first run goes on unharmed");
+        first.finish(&mut to_the_end).expect("the first run goes on unharmed");
         begin(exporter, &path, &run, 1).expect("the name is free again");
     }
 }
@@ -148,7 +154,7 @@ fn what_a_killed_run_left_behind_does_not_block_the_next() {
         let partial = folder.path().join(format!("a.{}.partial", exporter.ending));
         fs::write(&partial, vec![b'#'; 1_000_000]).expect("written");
         let written =
-            begin(exporter, &path, &run_of(3), 2).expect("written").finish(&mut |_| {}).expect("written");
+            begin(exporter, &path, &run_of(3), 2).expect("written").finish(&mut to_the_end).expect("written");
         assert!(written.bytes < 10_000, "nothing of the killed run is in {} bytes", written.bytes);
     }
     assert_eq!(names_in(folder.path()), ["a.csv", "a.npz"]);

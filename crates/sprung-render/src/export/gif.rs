@@ -6,11 +6,11 @@ use std::path::Path;
 
 use sprung::Result;
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, RunInfo, Written};
+use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
 
-use super::picture_size;
 use super::png::no_frames;
 use super::spool::Spool;
+use super::{go_on, picture_size};
 use crate::image::Image;
 use crate::quantise::Palette;
 
@@ -39,7 +39,7 @@ impl Export for Animation {
         self.spool.push(frame)
     }
 
-    fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written> {
+    fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {
         let Self { mut file, mut spool, size } = *self;
         let path = file.path().to_owned();
         let fail = |error: io::Error| write_error(&path, &error);
@@ -59,7 +59,7 @@ impl Export for Animation {
             |image| image,
             |_, image| {
                 pictures.push(image);
-                Ok(())
+                go_on(progress(0.0), &path)
             },
         )?;
         let palette = Palette::learn(&pictures);
@@ -81,8 +81,7 @@ impl Export for Animation {
                 encoder.write_frame(&frame).map_err(encoding).map_err(fail)?;
                 drop(frame);
                 before = indices;
-                progress((index + 1) as f64 / frames.len() as f64);
-                Ok(())
+                go_on(progress((index + 1) as f64 / frames.len() as f64), &path)
             },
         )?;
         drop(encoder);

@@ -5,7 +5,7 @@ mod mp4;
 mod png;
 mod spool;
 
-use std::ops::RangeInclusive;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::path::Path;
 
 use sprung::{Code, Error, Result};
@@ -51,6 +51,15 @@ fn picture_size(path: &Path, options: &Options, default: [u32; 2]) -> Result<[u3
     let (low, high) = (SIZE_RANGE.start(), SIZE_RANGE.end());
     let sentence = format!("is {width}x{height}, and width and height must be from {low} to {high} pixels");
     Err(Error::new(Code::OutOfRange, sentence).at_field("size").in_file(path.display().to_string()))
+}
+
+/// The answer to progress as a result: an error where the drawing of `path` is broken off.
+fn go_on(answer: ControlFlow<()>, path: &Path) -> Result<()> {
+    if answer.is_continue() {
+        return Ok(());
+    }
+    let sentence = format!("interrupted while {} was being drawn; it is not kept", path.display());
+    Err(Error::new(Code::Interrupted, sentence))
 }
 
 #[cfg(test)]

@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use sprung::{Code, Error, Result};
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, RunInfo, Written};
+use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
 
-use super::picture_size;
 use super::png::no_frames;
 use super::spool::Spool;
+use super::{go_on, picture_size};
 
 /// A film.
 pub const MP4: Exporter = Exporter { ending: "mp4", description: "a film (needs ffmpeg)", open };
@@ -65,7 +65,7 @@ impl Export for Film {
         self.spool.push(frame)
     }
 
-    fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written> {
+    fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {
         let Self { file, mut spool, size } = *self;
         let path = file.path().to_owned();
         if spool.times().is_empty() {
@@ -86,18 +86,21 @@ impl Export for Film {
                     broken = true; // ffmpeg closed its end; its own words say why
                     return Err(Error::new(Code::Unwritable, "ffmpeg stopped"));
                 }
-                progress((index + 1) as f64 / frames.len() as f64);
-                Ok(())
+                go_on(progress((index + 1) as f64 / frames.len() as f64), &path)
             },
         );
-        // ffmpeg's own words come first: when it stops, every other error is a consequence.
-        match encoder.finish() {
-            Err(reason) if broken || drawn.is_ok() => {
-                let sentence = format!("cannot be written: ffmpeg stopped with \"{reason}\"");
-                return Err(Error::new(Code::Unwritable, sentence).in_file(path.display().to_string()));
-            }
-            _ => drawn?,
+        // Of half a film nothing is kept: dropped, the encoder ends ffmpeg and the file goes.
+        if let Err(error) = &drawn
+            && !broken
+        {
+            return Err(error.clone());
         }
+        // ffmpeg's own words come first: when it stops, the broken pipe is a consequence.
+        if let Err(reason) = encoder.finish() {
+            let sentence = format!("cannot be written: ffmpeg stopped with \"{reason}\"");
+            return Err(Error::new(Code::Unwritable, sentence).in_file(path.display().to_string()));
+        }
+        drawn?;
         if std::fs::metadata(file.partial_path()).is_ok_and(|film| film.len() == 0) {
             let error = Error::new(Code::Unwritable, "cannot be written: ffmpeg wrote an empty file");
             return Err(error.in_file(path.display().to_string()));

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use sprung::{Code, Error, Params, Result, Snapshot};
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, RunInfo, Written};
+use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
 
-use super::picture_size;
+use super::{go_on, picture_size};
 use crate::image::Image;
 use crate::motion::Motion;
 use crate::view::{Quality, SceneView};
@@ -56,16 +56,16 @@ impl Export for Picture {
         Ok(())
     }
 
-    fn finish(self: Box<Self>, progress: &mut dyn FnMut(f64)) -> Result<Written> {
+    fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {
         let Some((snapshot, params)) = &self.chosen else { return Err(no_frames(self.file.path())) };
+        let path = self.file.path().to_owned();
+        go_on(progress(0.0), &path)?;
         let view = SceneView::new(&self.info, &self.motion, Quality::Still);
         let image = view.picture(params, snapshot.time, &snapshot.positions);
-        progress(0.8);
+        go_on(progress(0.8), &path)?;
         let mut file = self.file;
-        let path = file.path().to_owned();
         write_png(&mut file, &image).map_err(|error| write_error(&path, &error))?;
         let bytes = file.finish()?;
-        progress(1.0);
         Ok(Written { path, bytes, frames: 1 })
     }
 }

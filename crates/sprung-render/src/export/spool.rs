@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use sprung::{Params, Result, Vec3};
-use sprung_io::files::write_error;
+use sprung_io::files::{spool_beside, write_error};
 use sprung_io::{Frame, RunInfo};
 
 use crate::image::Image;
@@ -34,12 +34,10 @@ pub struct Spool {
 impl Spool {
     /// Begins a spool in the folder of `path`, for pictures of this size.
     pub fn new(path: &Path, info: &RunInfo, size: [u32; 2]) -> Result<Self> {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let file = tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))?;
         Ok(Self {
             path: path.to_owned(),
             info: info.clone(),
-            file: BufWriter::with_capacity(1 << 18, file),
+            file: BufWriter::with_capacity(1 << 18, spool_beside(path)?),
             times: Vec::new(),
             params: Vec::new(),
             motion: Motion::new(info, size),
