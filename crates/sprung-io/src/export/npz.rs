@@ -30,7 +30,7 @@ pub const NPZ: Exporter = Exporter {
 /// Length of every `.npy` header: room for any shape, and a multiple of 64 as the format asks.
 const NPY_HEADER_BYTES: usize = 128;
 /// Bytes that are written or moved at once.
-const PIECE_BYTES: usize = 1 << 18;
+const PIECE_BYTES: usize = 1 << 15;
 /// Room on the disk that is set aside: for the pieces in flight and for the archive's directory.
 const RESERVE_BYTES: usize = 4 * PIECE_BYTES;
 
