@@ -154,14 +154,14 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Parts { sentence, place, fix, .. } = &*self.0;
         if let Some(file) = &place.file {
-            write!(f, "{file}:")?;
+            write!(f, "{}:", visible(file))?;
             if let Some((line, column)) = place.line_column {
                 write!(f, "{line}:{column}:")?;
             }
             write!(f, " ")?;
         }
         if let Some(field) = &place.field {
-            write!(f, "{field}: ")?;
+            write!(f, "{}: ", visible(field))?;
         }
         write!(f, "{sentence}")?;
         if let Some(fix) = fix {
@@ -169,6 +169,12 @@ impl fmt::Display for Error {
         }
         Ok(())
     }
+}
+
+/// With control characters escaped: a file's name may hold a line break, and a message stays one line.
+fn visible(text: &str) -> String {
+    let escape = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(escape).collect()
 }
 
 impl std::error::Error for Error {}
