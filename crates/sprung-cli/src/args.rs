@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use sprung_render::export::EXPORTERS;
+use sprung_render::export::{EXPORTERS, SIZE_RANGE};
 
 /// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
 ///
@@ -120,7 +120,7 @@ pub struct RunArgs {
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// Built-in scenes or scene files [default: the four scenes of the assignment, cloth512 and jelly64]
+    /// Built-in scenes or scene files [default: the four scenes of the assignment and those for measuring speed]
     pub scenes: Vec<String>,
     /// Worker threads
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024), default_value_t = 1)]
@@ -157,8 +157,8 @@ fn not_negative(text: &str) -> Result<f64, String> {
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let allowed = 16..=8192;
-    let parse = |side: &str| side.parse().ok().filter(|side| allowed.contains(side));
+    let parse = |side: &str| side.parse().ok().filter(|side| SIZE_RANGE.contains(side));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| Some([parse(width)?, parse(height)?]));
-    sides.ok_or_else(|| "it must be WIDTHxHEIGHT, each from 16 to 8192, such as 1280x720".to_owned())
+    let (low, high) = (SIZE_RANGE.start(), SIZE_RANGE.end());
+    sides.ok_or_else(|| format!("it must be WIDTHxHEIGHT, each from {low} to {high}, such as 1280x720"))
 }

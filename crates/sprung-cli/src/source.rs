@@ -3,15 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sprung::scene::Scene;
+use sprung::scene::{self, Scene};
 use sprung::{Code, Error, Inline, Result, Simulation, Workers};
 use sprung_io::files;
 
 use crate::args::SceneArgs;
 use crate::memory;
-
-/// Scene files larger than this are refused unread.
-const MAX_SCENE_BYTES: u64 = 64 << 20;
 
 /// The scene with its changes, and the name to call it by.
 pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
@@ -32,7 +29,7 @@ fn named(text: &str) -> Result<(String, Scene)> {
     match Scene::builtin(text) {
         Ok(scene) => Ok((text.to_owned(), scene)),
         Err(_) if looks_like_a_file => {
-            let bytes = files::read(path, MAX_SCENE_BYTES)?;
+            let bytes = files::read(path, scene::MAX_BYTES)?;
             let name = path.file_stem().map_or(text.to_owned(), |stem| stem.to_string_lossy().into_owned());
             Ok((name, Scene::from_bytes(&bytes, text)?))
         }

@@ -4,14 +4,12 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
+use sprung::scene::{BUILTIN, Kind};
 use sprung::{Code, Error, Result, Simulation, Vec3};
 
 use crate::args::{BenchArgs, SceneArgs};
 use crate::console::{grouped, say};
 use crate::{memory, source};
-
-/// What is measured when no scene is named.
-const DEFAULT_SCENES: [&str; 6] = ["spring", "chain", "jelly", "cloth", "cloth512", "jelly64"];
 
 /// Every point that can move starts with noise up to this speed along each axis, m/s: a scene at rest tells nothing.
 const NOISE: f32 = 0.1;
@@ -43,7 +41,10 @@ struct Figures {
 /// Measures and prints.
 pub fn run(args: &BenchArgs) -> Result<()> {
     let scenes: Vec<&str> = match &args.scenes[..] {
-        [] => DEFAULT_SCENES.to_vec(),
+        [] => {
+            let measured = BUILTIN.iter().filter(|builtin| builtin.kind != Kind::Gallery);
+            measured.map(|builtin| builtin.name).collect()
+        }
         scenes => scenes.iter().map(String::as_str).collect(),
     };
     if !args.json {
