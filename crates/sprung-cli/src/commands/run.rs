@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use sprung::params::DT_RANGE;
 use sprung::scene::Scene;
 use sprung::{
     Change, Code, Error, Params, Result, SettleOptions, Simulation, significant as rounded, stability,
@@ -12,7 +13,7 @@ use sprung_io::{Options, RunInfo, Written};
 use super::record::Recorder;
 use super::show::describe;
 use crate::args::RunArgs;
-use crate::console::{bytes, complain, counted, grouped, note, progress, say, seconds};
+use crate::console::{bytes, complain, counted, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
 use crate::source;
 
@@ -67,9 +68,9 @@ pub fn run(args: &RunArgs) -> Result<()> {
         let state = simulation.state();
         let pace = state.time / simulated_in.as_secs_f64().max(1e-9);
         say(format_args!(
-            "{name}: {} frames, {} steps, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
-            grouped(plan.frames + 1),
-            grouped(state.step),
+            "{name}: {}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
+            counted(plan.frames + 1, "frame"),
+            counted(state.step, "step"),
             rounded(state.time),
             seconds(simulated_in),
             simulation.state_hash()
@@ -95,7 +96,8 @@ impl Plan {
             // The largest step not above dt that divides a frame; a quotient that is whole up to rounding is whole.
             Some(fps) => {
                 let steps = (1.0 / (fps * params.dt) - 1e-9).ceil().max(1.0);
-                (1.0 / (fps * steps), steps as u64)
+                // Not below the smallest step allowed, which a quotient may miss by its rounding.
+                ((1.0 / (fps * steps)).max(*DT_RANGE.start()), steps as u64)
             }
             None => (params.dt, u64::from(params.substeps)),
         };
@@ -113,9 +115,10 @@ impl Plan {
 
     fn announce(&self) {
         if let Some((fps, dt)) = self.fitted {
+            let make = if self.steps_per_frame == 1 { "makes" } else { "make" };
             let steps = counted(self.steps_per_frame, "step");
             note(format_args!(
-                "dt is {} s instead of {} s, so that {steps} make a frame of 1/{} s.",
+                "dt is {} s instead of {} s, so that {steps} {make} a frame of 1/{} s.",
                 rounded(self.dt),
                 rounded(dt),
                 rounded(fps)
@@ -192,12 +195,17 @@ fn warn_of_large_dt(simulation: &Simulation) {
     let Some(limit) = stability::sharp(model, params, positions).dt else { return };
     if params.dt > WARNING_SHARE * limit {
         let verdict = if params.dt > limit { "is over" } else { "is close to" };
+        let advised = WARNING_SHARE * certified.dt;
+        let advice = if advised >= *DT_RANGE.start() {
+            format!("Try dt = {} s, or \"auto\".", rounded(advised))
+        } else {
+            "No step is small enough: raise masses, or lower stiffness or damping.".to_owned()
+        };
         note(format_args!(
-            "Warning: dt = {} s {verdict} the largest stable step of {} s, set by {}; it may blow up. Try dt = {} s, or \"auto\".",
+            "Warning: dt = {} s {verdict} the largest stable step of {} s, set by {}; it may blow up. {advice}",
             rounded(params.dt),
             rounded(limit),
             describe(simulation, certified.setter),
-            rounded(WARNING_SHARE * certified.dt),
         ));
     }
 }
