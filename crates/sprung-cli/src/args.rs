@@ -54,8 +54,11 @@ pub enum Command {
         /// The shell
         shell: Shell,
     },
-    /// Print the manual page
-    Man,
+    /// Print the manual page, or that of one command; `sprung man run | man -l -` shows it
+    Man {
+        /// The command
+        command: Option<String>,
+    },
 }
 
 /// A scene and what is changed of it.
@@ -91,10 +94,11 @@ pub struct RunArgs {
     /// Record frames 0 to N
     #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
     pub frames: Option<u64>,
-    /// Record this many simulated seconds [default: 10]
+    /// Record this many simulated seconds, rounded up to whole frames [default: 10]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     pub seconds: Option<f64>,
-    /// Record F frames per simulated second; otherwise a frame is `substeps` steps of `dt`
+    /// Record F frames per simulated second; dt becomes the largest step not above it that divides such a frame.
+    /// Otherwise a frame is `substeps` steps of `dt`
     #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = positive)]
     pub fps: Option<f64>,
     /// Bring the scene to rest first

@@ -33,6 +33,9 @@ fn named(text: &str) -> Result<(String, Scene)> {
             let name = path.file_stem().map_or(text.to_owned(), |stem| stem.to_string_lossy().into_owned());
             Ok((name, Scene::from_bytes(&bytes, text)?))
         }
+        Err(error) if path.with_extension("toml").is_file() => {
+            Err(error.with_fix(format!("did you mean {text}.toml?")))
+        }
         Err(error) => Err(error),
     }
 }

@@ -47,6 +47,12 @@ fn bad_scene_files() {
             &["bad.toml:7:", "stiffness", "-5"],
         ),
         (&format!("{BODY}[[body.springs]]\nradius = 1\n"), &["bad.toml:5:", "stiffness"]),
+        (
+            &format!("{BODY}[[body.springs]]\nradius = 0.5\nstiffness = 5\n"),
+            &[
+                "bad.toml:6:10: body[0].springs[0].radius: is 0.5 m, and no two points of the body are that near",
+            ],
+        ),
     ];
     for (text, parts) in cases {
         let line = scene(text);
@@ -107,11 +113,11 @@ fn outputs_that_cannot_be_written() {
     assert!(line.starts_with("out.xyz:") && line.contains("csv") && line.contains("gif"), "{line}");
     assert!(run("out").starts_with("out:"));
     let line = complaint(folder.path(), &["run", "spring", "-o", "a.csv", "-o", "a.csv"]);
-    assert!(line.starts_with("a.csv:"), "the same output twice: {line}");
+    assert!(line.starts_with("a.csv: is given twice"), "the same output twice: {line}");
     let line = complaint(folder.path(), &["run", "spring", "-o", "a.csv", "--plot", "b.txt"]);
     assert!(line.starts_with("b.txt:") && line.contains("svg"), "{line}");
     let line = complaint(folder.path(), &["run", "spring", "-o", "same.png", "--plot", "same.png"]);
-    assert!(line.starts_with("same.png: cannot be written: another output"), "{line}");
+    assert!(line.starts_with("same.png: is given twice"), "{line}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left but the folder");
 }
 
@@ -133,6 +139,10 @@ fn bad_arguments() {
         (&["run", "jelly", "--frames", "3", "--seconds", "1"], &["--frames", "--seconds"]),
         (&["run", "jelly", "--threads", "0"], &["--threads"]),
         (&["run", "jelly", "--size", "10"], &["--size", "1280x720"]),
+        (&["run", "jelly", "--at", "1"], &["--at", ".png"]),
+        (&["run", "jelly", "-o", "a.png", "--seconds", "1", "--at", "9"], &["--at: is 9 s", "ends at 1.1 s"]),
+        (&["run", "jelly", "-o", "a.csv", "--size", "640x360"], &["--size", "picture"]),
+        (&["man", "ran"], &["there is no command \"ran\"", "run"]),
         (&["run", "jelly", "--frobnicate"], &["--frobnicate"]),
         (&["runn", "jelly"], &["runn", "'run'"]),
         (&["run"], &["SCENE"]),

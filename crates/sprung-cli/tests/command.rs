@@ -200,6 +200,7 @@ fn help_completions_manual_and_schema_come_from_the_same_definitions() {
         assert!(stdout(&sprung(folder.path(), &["man"])).contains(command));
         assert!(stdout(&sprung(folder.path(), &["completions", "bash"])).contains(command));
     }
+    assert!(stdout(&sprung(folder.path(), &["man", "run"])).contains("frames"));
     let schema: Value = serde_json::from_slice(&sprung(folder.path(), &["schema"]).stdout).unwrap();
     assert!(schema["properties"]["substeps"].is_object());
 }

@@ -120,15 +120,16 @@ fn golden_steps(kind: Kind) -> &'static [u64] {
     if kind == Kind::Benchmark { &[0, 1, 10] } else { &[0, 1, 100, 1000] }
 }
 
-/// `goldens.json`: for each built-in scene its state hash after some steps. Every build and every door must meet them.
-#[test]
-fn every_built_in_scene_has_its_golden_hashes() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/goldens.json");
+/// For each built-in scene its hashes, with so many threads.
+fn hashes(threads: usize) -> BTreeMap<String, BTreeMap<String, String>> {
     let mut found = BTreeMap::new();
     for builtin in BUILTIN {
         let mut run =
             Scene::builtin(builtin.name).and_then(|scene| scene.simulation()).expect("it is built in");
         run.keep_history(0);
+        if threads > 1 {
+            run.set_workers(Arc::new(Threads(threads)));
+        }
         let mut hashes = BTreeMap::new();
         for &step in golden_steps(builtin.kind) {
             let left = step - run.state().step;
@@ -137,6 +138,14 @@ fn every_built_in_scene_has_its_golden_hashes() {
         }
         found.insert(builtin.name.to_owned(), hashes);
     }
+    found
+}
+
+/// `goldens.json`: for each built-in scene its state hash after some steps. Every build and every door must meet them.
+#[test]
+fn every_built_in_scene_has_its_golden_hashes() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/goldens.json");
+    let found = hashes(1);
     if std::env::var_os("SPRUNG_UPDATE_GOLDENS").is_some() {
         let text = serde_json::to_string_pretty(&found).expect("texts can be written");
         std::fs::write(path, text + "\n").expect("the file can be written");
@@ -147,4 +156,5 @@ fn every_built_in_scene_has_its_golden_hashes() {
         found, golden,
         "other bits: see CONTRIBUTING.md before writing new goldens with SPRUNG_UPDATE_GOLDENS=1"
     );
+    assert_eq!(hashes(3), golden, "other bits with three threads");
 }

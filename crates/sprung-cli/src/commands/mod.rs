@@ -35,15 +35,23 @@ pub fn run(cli: Cli) -> Result<()> {
             console::say(String::from_utf8_lossy(&script).trim_end());
             Ok(())
         }
-        Some(Command::Man) => man(),
+        Some(Command::Man { command }) => man(command.as_deref()),
     }
 }
 
-/// One page for the command and all of its sub-commands.
-fn man() -> Result<()> {
+/// The page of the whole command, or of one of its sub-commands.
+fn man(name: Option<&str>) -> Result<()> {
+    let mut whole = Cli::definition();
+    whole.build();
+    let command = match name {
+        None => whole,
+        Some(name) => whole.find_subcommand(name).cloned().ok_or_else(|| {
+            let names: Vec<&str> = whole.get_subcommands().map(clap::Command::get_name).collect();
+            let sentence = format!("there is no command \"{name}\"; there are {}", names.join(", "));
+            Error::new(Code::NotFound, sentence)
+        })?,
+    };
     let mut page = Vec::new();
-    let mut command = Cli::definition().flatten_help(true);
-    command.build();
     clap_mangen::Man::new(command)
         .render(&mut page)
         .map_err(|error| Error::new(Code::Unwritable, format!("cannot make the manual page: {error}")))?;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use sprung::{Energy, Error, Params, Result, Simulation, Snapshot};
+use sprung::{Code, Energy, Error, Params, Result, Simulation, Snapshot};
 use sprung_io::{Export, Frame, Options, RunInfo, Written};
 use sprung_render::export;
 use sprung_render::plot::EnergyPlot;
@@ -41,6 +41,14 @@ impl Recorder {
         info: &RunInfo,
         options: &Options,
     ) -> Result<Self> {
+        let mut names: Vec<&PathBuf> = outputs.iter().chain(plot).collect();
+        names.sort();
+        if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            let error = Error::new(Code::Duplicate, "is given twice as an output");
+            return Err(error
+                .in_file(twice[0].display().to_string())
+                .with_fix("give each output a name of its own"));
+        }
         let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
         let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
         let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;

@@ -39,6 +39,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
         simulation.change(Change::Dt(plan.dt))?;
     }
     simulation.keep_ledger(args.plot.is_some());
+    check_picture_options(args, &plan)?;
     let options = Options { size: args.size, at: args.at };
     let info = info(&name, &scene, &simulation, &plan);
     let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options)?;
@@ -75,6 +76,34 @@ pub fn run(args: &RunArgs) -> Result<()> {
             seconds(simulated_in),
             simulation.state_hash()
         ));
+    }
+    Ok(())
+}
+
+/// `--at` needs a picture and a time that the run reaches, `--size` something to draw.
+fn check_picture_options(args: &RunArgs, plan: &Plan) -> Result<()> {
+    let draws = |endings: &[&str]| {
+        let ending = |path: &std::path::PathBuf| {
+            path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+        };
+        args.output.iter().filter_map(ending).any(|ending| endings.contains(&ending.as_str()))
+    };
+    if args.size.is_some() && !draws(&["png", "gif", "mp4"]) {
+        let error = Error::new(Code::Conflict, "is of no use without a picture").in_file("--size");
+        return Err(error.with_fix("add -o with a .png, .gif or .mp4"));
+    }
+    let Some(at) = args.at else { return Ok(()) };
+    if !draws(&["png"]) {
+        return Err(Error::new(Code::Conflict, "is of no use without a .png")
+            .in_file("--at")
+            .with_fix("add -o NAME.png"));
+    }
+    let end = plan.dt * (plan.steps_per_frame * plan.frames) as f64;
+    if at > end + 1e-9 {
+        let sentence = format!("is {} s, and the run ends at {} s", rounded(at), rounded(end));
+        return Err(Error::new(Code::OutOfRange, sentence)
+            .in_file("--at")
+            .with_fix("make it longer with --seconds"));
     }
     Ok(())
 }
@@ -202,7 +231,7 @@ fn warn_of_large_dt(simulation: &Simulation) {
             "No step is small enough: raise masses, or lower stiffness or damping.".to_owned()
         };
         note(format_args!(
-            "Warning: dt = {} s {verdict} the largest stable step of {} s, set by {}; it may blow up. {advice}",
+            "Warning: dt = {} s {verdict} the largest stable step of {} s; the tightest place is {}. Expect a blow-up. {advice}",
             rounded(params.dt),
             rounded(limit),
             describe(simulation, certified.setter),

@@ -5,7 +5,7 @@ use sprung::stability::{self, Limit, Setter, Sharp};
 use sprung::{Energy, Result, Simulation, significant as rounded};
 
 use crate::args::ShowArgs;
-use crate::console::{grouped, say};
+use crate::console::{counted, grouped, say};
 use crate::source;
 
 /// The answer to `show --json`. A limit that does not exist is `null`.
@@ -89,7 +89,7 @@ pub fn run(args: &ShowArgs) -> Result<()> {
         };
         say(serde_json::to_string_pretty(&answer).unwrap_or_default());
     } else {
-        say(format_args!("{name}: {}", scene.title));
+        say(if scene.title.is_empty() { name } else { format!("{name}: {}", scene.title) });
         print(&simulation, &energy, &sharp, certified.as_ref(), every.as_ref());
     }
     Ok(())
@@ -110,11 +110,12 @@ fn print(
     row("moving mass", format!("{} kg", rounded(total_mass(simulation))));
     row("energy", format!("{} J", rounded(energy.total())));
     let frame = rounded(params.dt * f64::from(params.substeps));
-    row("dt", format!("{} s × {} substeps = {frame} s per frame", rounded(params.dt), params.substeps));
+    let substeps = counted(params.substeps.into(), "substep");
+    row("dt", format!("{} s × {substeps} = {frame} s per frame", rounded(params.dt)));
     match sharp.dt {
         None => row("dt limit", "none: nothing here limits the step".to_owned()),
         Some(limit) => {
-            let verdict = if params.dt > limit { "  TOO LARGE: it will blow up" } else { "" };
+            let verdict = if params.dt > limit { "  TOO LARGE: expect a blow-up" } else { "" };
             row("dt limit", share(params.dt, limit) + verdict);
         }
     }

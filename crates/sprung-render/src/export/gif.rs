@@ -1,4 +1,4 @@
-//! `.gif`: an animation that plays in real time and loops for ever.
+//! `.gif`: an animation that plays in real time and loops, at most 50 frames a second for ever.
 
 use std::borrow::Cow;
 use std::io;

@@ -205,6 +205,10 @@ impl<'a> Assembly<'a> {
         if let Some(radius) = springs.radius {
             let made = self.builder.connect_within(points.clone(), radius as f32, material);
             made.map_err(|error| self.explained(error, format!("{path}.radius")))?;
+            if self.builder.spring_count() == first {
+                let sentence = format!("is {radius} m, and no two points of the body are that near");
+                return Err(Error::new(Code::NotFound, sentence).at_field(format!("{path}.radius")));
+            }
         }
         if let (Some(kinds), Some(lattice)) = (&springs.kinds, body.shape()) {
             for &kind in kinds {
