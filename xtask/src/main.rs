@@ -31,7 +31,7 @@ const STAGES: &[Stage] = &[
     Stage { name: "doc", about: "the API documentation builds without warnings", run: stages::doc },
     Stage {
         name: "release-tests",
-        about: "all tests, optimised: the same bits as in debug",
+        about: "golden hashes and stored pictures, optimised: the same as in debug",
         run: stages::release_tests,
     },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
