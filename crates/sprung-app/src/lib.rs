@@ -1,1 +1,24 @@
-//! The sprung window.
+//! The sprung window: watch, grab and understand mass-spring systems.
+//!
+//! The app never touches a simulation. It sends commands to a driver and draws the newest report. The same code runs
+//! natively and in a browser page: nothing here blocks, starts threads of its own or opens a file, except through
+//! [`files`].
+
+mod action;
+mod app;
+mod card;
+mod explain;
+pub mod files;
+mod native;
+mod panel;
+mod plots;
+mod settings;
+mod state;
+mod theme;
+mod timeline;
+mod view;
+
+pub use action::{ACTIONS, Action, ActionInfo};
+pub use app::App;
+pub use native::{Options, run};
+pub use state::{AppState, Pick, Tool};

@@ -1,0 +1,13 @@
+//! The window alone; `sprung` and `sprung view` open the same one.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    sprung_app::run(sprung_app::Options::default()).map_or_else(
+        |error| {
+            eprintln!("sprung: {error}");
+            ExitCode::from(error.exit_status())
+        },
+        |()| ExitCode::SUCCESS,
+    )
+}
