@@ -21,4 +21,5 @@ mod view;
 pub use action::{ACTIONS, Action, ActionInfo};
 pub use app::App;
 pub use native::{Options, run};
+pub use sprung_driver::Source;
 pub use state::{AppState, Pick, Tool};

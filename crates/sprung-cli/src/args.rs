@@ -9,8 +9,8 @@ use sprung_render::export::{EXPORTERS, SIZE_RANGE};
 
 /// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
 ///
-/// Without a command it runs the demonstration: ten simulated seconds of a cube of jelly, to jelly.gif and jelly.png in
-/// the current folder.
+/// Without a command it opens the window. Where there is no display, it runs the demonstration: ten simulated seconds of a
+/// cube of jelly, to jelly.gif and jelly.png in the current folder.
 #[derive(Debug, Parser)]
 #[command(name = "sprung", version, max_term_width = 100)]
 pub struct Cli {
@@ -37,6 +37,8 @@ impl Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Open the window, to watch, grab and change a scene
+    View(ViewArgs),
     /// List the built-in scenes
     Scenes,
     /// Describe a scene: points, springs, energy, and how large dt may be
@@ -62,12 +64,22 @@ pub enum Command {
 }
 
 /// A scene and what is changed of it.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct SceneArgs {
     /// A built-in scene's name, or a scene file
     pub scene: String,
     /// Change a value of the scene, such as dt=0.005, gravity=[0,-1.62,0] or body.jelly.springs.stiffness=500
     #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// Arguments of `view`.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// A built-in scene's name, or a scene file [default: the scene of last time]
+    pub scene: Option<String>,
+    /// Change a value of the scene, such as dt=0.005, gravity=[0,-1.62,0] or body.jelly.springs.stiffness=500
+    #[arg(long, value_name = "KEY=VALUE", requires = "scene")]
     pub set: Vec<String>,
 }
 

@@ -1,17 +1,19 @@
-//! No command: the demonstration.
-
-use sprung::Result;
+//! The demonstration, where there is no window: a scene to an animation and a picture, and what to try next.
 
 use super::run::run as record;
 use crate::args::{RunArgs, SceneArgs};
 use crate::console::say;
 
-/// Ten simulated seconds of jelly at real-time speed.
-pub fn run() -> Result<()> {
-    say("A cube of jelly falls on a plane: ten seconds, to jelly.gif and jelly.png.");
+/// Ten simulated seconds at real-time speed, of the jelly unless another scene was asked for.
+pub fn run(scene: Option<&SceneArgs>) -> sprung::Result<()> {
+    let scene = scene.cloned().unwrap_or_else(|| SceneArgs { scene: "jelly".to_owned(), set: Vec::new() });
+    // Of a scene file only the name, so that the files land in the current folder.
+    let stem = std::path::Path::new(&scene.scene).file_stem().unwrap_or_default().to_os_string();
+    let [film, picture] = ["gif", "png"].map(|ending| std::path::Path::new(&stem).with_extension(ending));
+    say(format_args!("Ten seconds of {}, to {} and {}.", scene.scene, film.display(), picture.display()));
     record(&RunArgs {
-        scene: SceneArgs { scene: "jelly".to_owned(), set: Vec::new() },
-        output: vec!["jelly.gif".into(), "jelly.png".into()],
+        scene,
+        output: vec![film, picture],
         frames: None,
         seconds: Some(10.0),
         fps: Some(25.0),

@@ -7,16 +7,20 @@ mod record;
 mod run;
 mod scenes;
 mod show;
+mod view;
 
 use sprung::{Code, Error, Result};
 
-use crate::args::{Cli, Command};
+use crate::args::{Cli, Command, SceneArgs};
 use crate::console;
 
 /// Does what the arguments say.
 pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
-        None => demo::run(),
+        None => view::run(None),
+        Some(Command::View(args)) => {
+            view::run(args.scene.map(|scene| SceneArgs { scene, set: args.set }).as_ref())
+        }
         Some(Command::Scenes) => {
             scenes::run();
             Ok(())

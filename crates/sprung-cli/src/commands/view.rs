@@ -1,0 +1,35 @@
+//! `sprung view`, and `sprung` alone: the window, or the demonstration where there can be none.
+
+#[cfg(not(feature = "window"))]
+use sprung::Error;
+use sprung::{Code, Result};
+
+use super::demo;
+use crate::args::SceneArgs;
+use crate::console::note;
+use crate::source;
+
+/// Opens the window on a scene, or on that of last time.
+pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
+    // What is wrong with the scene is said before a window is tried.
+    let opened = scene.map(source::scene).transpose()?;
+    match window(opened) {
+        Err(error) if error.code() == Code::Unsupported => {
+            note(format_args!("sprung: {error}. Here is the demonstration instead."));
+            demo::run(scene)
+        }
+        outcome => outcome,
+    }
+}
+
+#[cfg(feature = "window")]
+fn window(opened: Option<(String, sprung::scene::Scene)>) -> Result<()> {
+    let source = opened.map(|(name, scene)| sprung_app::Source { name, scene });
+    sprung_app::run(sprung_app::Options { source })
+}
+
+#[cfg(not(feature = "window"))]
+fn window(_: Option<(String, sprung::scene::Scene)>) -> Result<()> {
+    let error = Error::new(Code::Unsupported, "this build of sprung has no window");
+    Err(error.with_fix("build it with its default features"))
+}
