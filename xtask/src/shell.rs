@@ -51,6 +51,16 @@ pub fn read(command: &mut Command) -> Outcome<Vec<u8>> {
     }
 }
 
+/// Runs a command without a word and gives what it wrote to its standard output: for what is asked many times.
+pub fn quiet(command: &mut Command) -> Outcome<Vec<u8>> {
+    let output = command.output().map_err(|error| format!("`{}` did not start: {error}", shown(command)))?;
+    if output.status.success() {
+        return Ok(output.stdout);
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    Err(format!("`{}` ended with {}: {}", shown(command), output.status, said.trim()))
+}
+
 /// Whether a command starts and ends well; what it says is not shown.
 pub fn succeeds(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
