@@ -101,6 +101,8 @@ pub enum Change {
     Grab(Grab),
     /// Lets a grabbed point go.
     Release(usize),
+    /// All parameters at once: undo, redo, back to the scene's own values. Cheap, as the long arrays are shared.
+    Params(Arc<Params>),
 }
 
 impl Params {
@@ -119,6 +121,16 @@ impl Params {
     pub fn is_live(&self, model: &Model, spring: usize) -> bool {
         let an_end_is_free = model.springs[spring].iter().any(|&point| !self.is_fixed(point as usize));
         an_end_is_free && !self.spring_cut[spring]
+    }
+
+    /// Whether masses, pins and springs are the very arrays of `other`, and not merely equal ones.
+    pub(crate) fn shares_arrays_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.point_mass, &other.point_mass)
+            && Arc::ptr_eq(&self.point_pinned, &other.point_pinned)
+            && Arc::ptr_eq(&self.spring_stiffness, &other.spring_stiffness)
+            && Arc::ptr_eq(&self.spring_damping, &other.spring_damping)
+            && Arc::ptr_eq(&self.spring_rest_length, &other.spring_rest_length)
+            && Arc::ptr_eq(&self.spring_cut, &other.spring_cut)
     }
 
     /// Memory of the long arrays that are not shared with `other`, bytes.
@@ -230,6 +242,10 @@ impl Params {
             Change::Release(point) => {
                 check_index("release", *point, points)?;
                 self.grabs.retain(|grab| grab.point != *point);
+            }
+            Change::Params(params) => {
+                params.validate(model)?;
+                self.clone_from(params);
             }
         }
         Ok(())

@@ -278,12 +278,13 @@ impl Simulation {
 
     fn change_unlogged(&mut self, change: &Change) -> Result<()> {
         let before = moves_energy(change).then(|| self.energy().total());
+        let old = self.params.clone();
         Arc::make_mut(&mut self.params).apply(&self.model, change)?;
-        self.solver_is_stale |= is_packed(change);
-        if matches!(change, Change::Dt(_)) {
+        self.solver_is_stale |= !self.params.shares_arrays_with(&old);
+        if self.params.dt != old.dt {
             self.state.restart_clock();
         }
-        if matches!(change, Change::Mass(..) | Change::Pin(..)) {
+        if matches!(change, Change::Mass(..) | Change::Pin(..) | Change::Params(_)) {
             stop_fixed_points(&self.params, &mut self.state);
         }
         if let Some(before) = before {
@@ -401,14 +402,11 @@ impl std::fmt::Debug for Simulation {
 
 /// Whether a change can alter the energy of the current state.
 fn moves_energy(change: &Change) -> bool {
-    use Change::{Cut, Gravity, Mass, Pin, Planes, RestScale, Stiffness};
-    matches!(change, Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..))
-}
-
-/// Whether a change alters what the solver has packed: masses and springs.
-fn is_packed(change: &Change) -> bool {
-    use Change::{Cut, Damping, Mass, Pin, RestScale, Stiffness};
-    matches!(change, Mass(..) | Pin(..) | Stiffness(..) | Damping(..) | RestScale(..) | Cut(..))
+    use Change::{Cut, Gravity, Mass, Params, Pin, Planes, RestScale, Stiffness};
+    matches!(
+        change,
+        Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..) | Params(_)
+    )
 }
 
 /// A thousandth of the largest weight, N.

@@ -2,8 +2,10 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{scenes, steps};
-use sprung::{Change, ContactLaw, Event, Grab, Plane, SettleOptions, Simulation, Vec3};
+use sprung::{Change, ContactLaw, Event, Grab, Params, Plane, SettleOptions, Simulation, Vec3};
 
 /// One of every kind of change, for a scene with at least 15 points and 14 springs.
 fn every_change() -> Vec<Change> {
@@ -27,7 +29,20 @@ fn every_change() -> Vec<Change> {
         Change::Mass(0..1, 2.0),
         Change::Force(4, Vec3::ZERO),
         Change::Dt(0.01),
+        Change::Params(all_at_once()),
     ]
+}
+
+/// The chain's own parameters but for some of every kind.
+fn all_at_once() -> Arc<Params> {
+    let mut params = scenes::engine(&scenes::chain()).params().clone();
+    params.dt = 0.008;
+    params.gravity = Vec3::new(0.0, -8.0, 2.0);
+    Arc::make_mut(&mut params.point_mass)[7] = 2.5;
+    Arc::make_mut(&mut params.point_pinned)[13] = true;
+    Arc::make_mut(&mut params.spring_stiffness)[4] = 120.0;
+    params.external_forces.insert(9, Vec3::X);
+    Arc::new(params)
 }
 
 /// A chain to which everything is done; the hashes on arriving at each step and after what was done there.
@@ -57,7 +72,8 @@ fn eventful(bytes: usize) -> (Simulation, Vec<u64>) {
 /// Where a step has events, rewinding shows the state after them; the hashes were taken on arrival.
 fn hash_after_events(run: &Simulation, arrived: &[u64], step: usize) -> Option<u64> {
     let touched = run.log().iter().any(|(at, event)| {
-        let moves = matches!(event, Event::Settle(_) | Event::Change(Change::Pin(..) | Change::Mass(..)));
+        use Change::{Mass, Params, Pin};
+        let moves = matches!(event, Event::Settle(_) | Event::Change(Pin(..) | Mass(..) | Params(_)));
         *at == step as u64 && moves
     });
     (!touched).then(|| arrived[step])
@@ -105,10 +121,54 @@ fn every_kind_of_change_is_in_the_list() {
         Change::Force(..) => 10,
         Change::Grab(_) => 11,
         Change::Release(_) => 12,
+        Change::Params(_) => 13,
     };
-    let mut seen = [false; 13];
+    let mut seen = [false; 14];
     every_change().iter().for_each(|change| seen[kind(change)] = true);
-    assert_eq!(seen, [true; 13]);
+    assert_eq!(seen, [true; 14]);
+}
+
+#[test]
+fn all_parameters_at_once_are_as_one_by_one() {
+    let changes = || every_change().into_iter().filter(|change| !matches!(change, Change::Params(_)));
+    let mut one_by_one = scenes::engine(&scenes::chain());
+    let own = Arc::new(one_by_one.params().clone());
+    steps(&mut one_by_one, 30);
+    let mut at_once = one_by_one.clone();
+    let before = at_once.energy().total();
+    changes().try_for_each(|change| one_by_one.change(change)).expect("allowed");
+    at_once.change(Change::Params(Arc::new(one_by_one.params().clone()))).expect("allowed");
+    assert_eq!(at_once.params(), one_by_one.params());
+    // What it adds to the energy is work put in.
+    let jump = at_once.energy().total() - before;
+    assert!((jump - at_once.state().ledger.work_in).abs() <= 1e-12 * before.abs());
+    // Undone, nothing is left of it but that it was done: the points that no pin had stopped go on as before.
+    let mut untouched = scenes::engine(&scenes::chain());
+    steps(&mut untouched, 30);
+    at_once.change(Change::Params(own.clone())).expect("allowed");
+    assert_eq!((at_once.params(), at_once.state_hash()), (&*own, untouched.state_hash()));
+    assert_eq!(at_once.log().len(), 2);
+}
+
+#[test]
+fn parameters_that_do_not_fit_are_refused_whole() {
+    let mut run = scenes::engine(&scenes::chain());
+    let before = run.params().clone();
+    let refused = |edit: &dyn Fn(&mut Params)| {
+        let mut params = before.clone();
+        edit(&mut params);
+        Change::Params(Arc::new(params))
+    };
+    for change in [
+        refused(&|params| params.dt = f64::NAN),
+        refused(&|params| Arc::make_mut(&mut params.point_mass)[3] = -1.0),
+        refused(&|params| params.spring_cut = Arc::new(vec![true])),
+        refused(&|params| drop(params.external_forces.insert(15, Vec3::X))),
+    ] {
+        assert!(run.change(change).is_err());
+        assert_eq!(run.params(), &before);
+    }
+    assert!(run.log().is_empty());
 }
 
 #[test]

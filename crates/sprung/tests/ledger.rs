@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{driven, network, rounding, scenes, simulation, steps, velocity};
 use proptest::prelude::*;
 use sprung::{
@@ -126,6 +128,7 @@ fn nothing_is_unaccounted_for_when_things_change() {
         Change::Pin(990..1000, false),
         Change::Release(5),
         Change::Dt(0.004),
+        Change::Params(Arc::new(run.params().clone())),
     ];
     for change in changes {
         let (total, work_in) = (run.energy().total(), run.state().ledger.work_in);
