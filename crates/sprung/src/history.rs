@@ -24,6 +24,20 @@ pub enum Event {
     Settle(SettleOptions),
 }
 
+impl Event {
+    /// Whether this leaves nothing of an event that came just before it.
+    fn replaces(&self, before: &Self) -> bool {
+        use Change::{Carry, Grab, Place};
+        let (Self::Change(new), Self::Change(old)) = (self, before) else { return false };
+        match (new, old) {
+            (Grab(new), Grab(old)) => new.point == old.point,
+            // Letting go is another matter: the point keeps the velocity that it was carried with.
+            (Carry(new, Some(_)), Carry(old, Some(_))) | (Place(new, _), Place(old, _)) => new == old,
+            _ => false,
+        }
+    }
+}
+
 /// A run: a first state, what was done to it and when, and some states on the way.
 ///
 /// A checkpoint at step s is the state on arriving there, before the events logged for s.
@@ -73,17 +87,12 @@ impl History {
         }
     }
 
-    /// Notes what was done. Of a grab that is dragged along between two steps only the last place counts.
+    /// Notes what was done. Of a point that is dragged along between two steps only the last grab, carry or place counts.
     pub fn record(&mut self, step: u64, event: Event) {
-        if let (Event::Change(Change::Grab(new)), Some((at, Event::Change(Change::Grab(old))))) =
-            (&event, self.log.last_mut())
-            && *at == step
-            && old.point == new.point
-        {
-            *old = *new;
-            return;
+        match self.log.last_mut() {
+            Some((at, last)) if *at == step && event.replaces(last) => *last = event,
+            _ => self.log.push((step, event)),
         }
-        self.log.push((step, event));
     }
 
     /// A step was taken.

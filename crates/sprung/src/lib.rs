@@ -8,6 +8,7 @@ pub mod contact;
 pub mod energy;
 mod error;
 pub mod force;
+mod hand;
 pub mod history;
 mod kernel;
 mod math;

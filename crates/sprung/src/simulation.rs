@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
 use crate::history::{Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
+use crate::math::without_negligible;
 use crate::model::Model;
 use crate::params::{Change, Params, check_vector};
 use crate::settle::{SettleOptions, Settled};
@@ -50,6 +51,18 @@ pub struct Simulation {
     drives: Drives,
     ledger: Option<Ledger>,
     snapshot: Snapshot,
+    /// If placing a point was the last thing done: how it was before.
+    placed: Option<Placed>,
+}
+
+/// A point before it was placed. A hand that moves a point about while time stands still places it over and over; each
+/// time it is taken from where it was at first, so that the last place alone counts, to the bit.
+#[derive(Clone, Copy)]
+struct Placed {
+    point: usize,
+    position: [Vec3; 2],
+    velocity: [Vec3; 2],
+    work_in: f64,
 }
 
 impl Simulation {
@@ -62,7 +75,7 @@ impl Simulation {
         let model = model.into();
         params.validate(&model)?;
         check_state(&model, &state)?;
-        stop_fixed_points(&params, &mut state);
+        hold_fixed_points(&params, &mut state);
         let start = Energy::of(&model, &params, &state).total();
         state.ledger = LedgerSums { start, ..LedgerSums::default() };
         Self::resume(model, params, state)
@@ -77,7 +90,7 @@ impl Simulation {
         let model = model.into();
         params.validate(&model)?;
         check_state(&model, &state)?;
-        stop_fixed_points(&params, &mut state);
+        hold_fixed_points(&params, &mut state);
         state.check_clock(params.dt);
         let params = Arc::new(params);
         let start = Arc::new(Checkpoint { state: state.clone(), params: params.clone() });
@@ -92,6 +105,7 @@ impl Simulation {
             drives: Drives::default(),
             ledger: None,
             snapshot: Snapshot::default(),
+            placed: None,
             model,
             params,
             state,
@@ -213,6 +227,7 @@ impl Simulation {
         let here = || Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() });
         let first = if untouched { self.start.clone() } else { here() };
         self.history = History::new(first, bytes);
+        self.placed = None;
         self.watch.restart(&self.state, &self.params, 0);
     }
 
@@ -255,14 +270,15 @@ impl Simulation {
     /// One step, watched; on a blow-up the last good state is restored and what came after it is forgotten.
     fn advance(&mut self) -> Result<()> {
         self.refresh_solver();
-        self.drives.begin(&self.params, &self.state);
+        self.placed = None;
+        self.drives.begin(&self.model, &self.params, &self.state);
         if let Some(ledger) = &mut self.ledger {
             ledger.begin(&self.model, &self.params, &self.state);
         }
         let finite = self.solver.step(&self.params, &mut self.state, &*self.workers);
-        self.drives.end(&self.params, &mut self.state);
+        let stored_by_hand = self.drives.end(&self.model, &self.params, &mut self.state);
         if let Some(ledger) = &mut self.ledger {
-            ledger.end(&self.model, &self.params, &mut self.state);
+            ledger.end(&self.model, &self.params, &mut self.state, stored_by_hand);
         }
         match self.watch.look(&self.model, &self.params, &mut self.state, finite) {
             None => Ok(()),
@@ -277,19 +293,53 @@ impl Simulation {
     }
 
     fn change_unlogged(&mut self, change: &Change) -> Result<()> {
+        if let Change::Carry(point, _) | Change::Place(point, _) = change {
+            return self.move_point(*point, change);
+        }
         let before = moves_energy(change).then(|| self.energy().total());
         let old = self.params.clone();
         Arc::make_mut(&mut self.params).apply(&self.model, change)?;
-        self.solver_is_stale |= !self.params.shares_arrays_with(&old);
+        self.placed = None;
+        self.solver_is_stale |=
+            !self.params.shares_arrays_with(&old) || !self.params.carried.keys().eq(old.carried.keys());
         if self.params.dt != old.dt {
             self.state.restart_clock();
         }
         if matches!(change, Change::Mass(..) | Change::Pin(..) | Change::Params(_)) {
-            stop_fixed_points(&self.params, &mut self.state);
+            hold_fixed_points(&self.params, &mut self.state);
         }
         if let Some(before) = before {
             // What a change adds to the energy is work put in, not energy from nowhere.
             self.state.ledger.work_in += self.energy().total() - before;
+        }
+        Ok(())
+    }
+
+    /// Carries, lets go or places one point: many times a second, so only what this point can alter is looked at.
+    fn move_point(&mut self, point: usize, change: &Change) -> Result<()> {
+        let old = self.params.clone();
+        Arc::make_mut(&mut self.params).apply(&self.model, change)?;
+        let earlier = self.placed.take().filter(|placed| placed.point == point);
+        if let Change::Place(_, position) = change {
+            if let Some(placed) = earlier {
+                placed.undo(&mut self.state);
+            }
+            self.placed = Some(Placed::new(point, &self.state));
+            let before = energy::around(&self.model, &old, &self.state, point);
+            self.state.position[point] = without_negligible(*position);
+            self.state.position_low[point] = Vec3::ZERO;
+            self.state.velocity[point] = Vec3::ZERO;
+            self.state.velocity_low[point] = Vec3::ZERO;
+            hold(&self.params, &mut self.state, point);
+            self.state.ledger.work_in +=
+                energy::around(&self.model, &self.params, &self.state, point) - before;
+        } else {
+            // The hand takes the point's own energy over, or gives it some.
+            let before = energy::around(&self.model, &old, &self.state, point);
+            hold(&self.params, &mut self.state, point);
+            self.solver.refresh_point(&self.params, point);
+            self.state.ledger.work_in +=
+                energy::around(&self.model, &self.params, &self.state, point) - before;
         }
         Ok(())
     }
@@ -314,6 +364,8 @@ impl Simulation {
             self.state = before;
             return settled;
         }
+        self.placed = None;
+        hold_fixed_points(&self.params, &mut self.state);
         // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
         let energy_before = Energy::of(&self.model, &self.params, &before).total();
         self.state.step = before.step;
@@ -376,6 +428,7 @@ impl Simulation {
             self.solver_is_stale = true;
         }
         self.state = state;
+        self.placed = None;
         self.watch.restart(&self.state, &self.params, events);
     }
 
@@ -421,10 +474,32 @@ fn stop(state: &mut State) {
     state.velocity_low.fill(Vec3::ZERO);
 }
 
-fn stop_fixed_points(params: &Params, state: &mut State) {
-    for point in (0..state.velocity.len()).filter(|&point| params.is_fixed(point)) {
-        state.velocity[point] = Vec3::ZERO;
+/// Points that no force can move stand still, or move as the hand does that carries them.
+fn hold_fixed_points(params: &Params, state: &mut State) {
+    (0..state.velocity.len()).for_each(|point| hold(params, state, point));
+}
+
+fn hold(params: &Params, state: &mut State, point: usize) {
+    if params.is_fixed(point) {
+        state.velocity[point] = params.carried.get(&point).copied().unwrap_or_default();
         state.velocity_low[point] = Vec3::ZERO;
+    }
+}
+
+impl Placed {
+    fn new(point: usize, state: &State) -> Self {
+        Self {
+            point,
+            position: [state.position[point], state.position_low[point]],
+            velocity: [state.velocity[point], state.velocity_low[point]],
+            work_in: state.ledger.work_in,
+        }
+    }
+
+    fn undo(self, state: &mut State) {
+        [state.position[self.point], state.position_low[self.point]] = self.position;
+        [state.velocity[self.point], state.velocity_low[self.point]] = self.velocity;
+        state.ledger.work_in = self.work_in;
     }
 }
 

@@ -29,6 +29,10 @@ fn every_change() -> Vec<Change> {
         Change::Mass(0..1, 2.0),
         Change::Force(4, Vec3::ZERO),
         Change::Dt(0.01),
+        Change::Carry(6, Some(Vec3::new(1.0, 2.0, -3.0))),
+        Change::Place(3, Vec3::new(7.0, 22.0, 1.0)),
+        Change::Carry(6, None),
+        Change::Carry(0, Some(Vec3::new(0.0, 1.0, 0.0))),
         Change::Params(all_at_once()),
     ]
 }
@@ -72,8 +76,11 @@ fn eventful(bytes: usize) -> (Simulation, Vec<u64>) {
 /// Where a step has events, rewinding shows the state after them; the hashes were taken on arrival.
 fn hash_after_events(run: &Simulation, arrived: &[u64], step: usize) -> Option<u64> {
     let touched = run.log().iter().any(|(at, event)| {
-        use Change::{Mass, Params, Pin};
-        let moves = matches!(event, Event::Settle(_) | Event::Change(Pin(..) | Mass(..) | Params(_)));
+        use Change::{Carry, Mass, Params, Pin, Place};
+        let moves = matches!(
+            event,
+            Event::Settle(_) | Event::Change(Pin(..) | Mass(..) | Params(_) | Carry(..) | Place(..))
+        );
         *at == step as u64 && moves
     });
     (!touched).then(|| arrived[step])
@@ -122,10 +129,12 @@ fn every_kind_of_change_is_in_the_list() {
         Change::Grab(_) => 11,
         Change::Release(_) => 12,
         Change::Params(_) => 13,
+        Change::Carry(..) => 14,
+        Change::Place(..) => 15,
     };
-    let mut seen = [false; 14];
+    let mut seen = [false; 16];
     every_change().iter().for_each(|change| seen[kind(change)] = true);
-    assert_eq!(seen, [true; 14]);
+    assert_eq!(seen, [true; 16]);
 }
 
 #[test]

@@ -25,13 +25,20 @@ pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
     }
 }
 
+/// Σ ½k_c·p² of one point over the planes, J; zero if no force can move it.
+pub(crate) fn stored(params: &Params, point: usize, position: DVec3) -> f64 {
+    if params.is_fixed(point) {
+        return 0.0;
+    }
+    params.planes.iter().map(|plane| plane.potential(position)).sum()
+}
+
 /// Σ ½k_c·p² over the touching points that can move, J.
 fn potential(_: &Model, params: &Params, state: &State) -> f64 {
-    let free = |&point: &usize| !params.is_fixed(point);
-    let of_plane = |plane: &crate::contact::Plane| -> f64 {
-        (0..state.position.len()).filter(free).map(|point| plane.potential(state.position64(point))).sum()
-    };
-    params.planes.iter().map(of_plane).sum()
+    if params.planes.is_empty() {
+        return 0.0;
+    }
+    (0..state.position.len()).map(|point| stored(params, point, state.position64(point))).sum()
 }
 
 fn parts(_: &Model, params: &Params, state: &State, conservative: &mut [DVec3], rest: &mut [DVec3]) {

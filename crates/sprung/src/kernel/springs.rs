@@ -127,8 +127,11 @@ pub(crate) struct SpringKernel {
 impl SpringKernel {
     /// Packs the springs that can move anything.
     pub fn new(model: &Model, params: &Params) -> Self {
-        let live: Vec<usize> =
-            (0..model.spring_count()).filter(|&spring| params.is_live(model, spring)).collect();
+        // A point that is carried may be let go: its springs are packed with all others.
+        let can_move = |&point: &u32| !params.is_anchored(point as usize);
+        let live: Vec<usize> = (0..model.spring_count())
+            .filter(|&spring| !params.spring_cut[spring] && model.springs[spring].iter().any(can_move))
+            .collect();
         let mut laws = Laws::with_len(live.len());
         for (at, &spring) in live.iter().enumerate() {
             laws.set(at, params, spring);
