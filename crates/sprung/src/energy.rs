@@ -132,15 +132,15 @@ impl Ledger {
             |forces: &[DVec3]| forces.iter().zip(&self.velocity).map(|(f, path)| f.dot(*path)).sum::<f64>();
         // What springs give to a carried point, the hand takes: all of it is in `stored_by_hand`.
         let free = |(point, _): &(usize, &DVec3)| !params.carried.contains_key(point);
-        let free_work = |forces: &[DVec3]| {
+        let work_on_free = |forces: &[DVec3]| {
             let forces = forces.iter().enumerate().filter(free);
             forces.map(|(point, force)| force.dot(self.velocity[point])).sum::<f64>()
         };
         let mut sums = state.ledger;
         sums.integrator_error -= stored_by_hand;
         for (force, (account, potential, conservative, rest)) in FORCES.iter().zip(&self.accounts) {
-            sums.integrator_error +=
-                (force.potential)(model, params, state) - potential + free_work(conservative);
+            let stored = (force.potential)(model, params, state) - potential;
+            sums.integrator_error += stored + work_on_free(conservative);
             match account {
                 Account::Dampers => sums.lost_in_dampers -= work(rest),
                 Account::Contact => sums.lost_in_contact -= work(rest),

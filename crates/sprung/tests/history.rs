@@ -172,7 +172,7 @@ fn parameters_that_do_not_fit_are_refused_whole() {
         refused(&|params| params.dt = f64::NAN),
         refused(&|params| Arc::make_mut(&mut params.point_mass)[3] = -1.0),
         refused(&|params| params.spring_cut = Arc::new(vec![true])),
-        refused(&|params| drop(params.external_forces.insert(15, Vec3::X))),
+        refused(&|params| params.external_forces = [(15, Vec3::X)].into()),
     ] {
         assert!(run.change(change).is_err());
         assert_eq!(run.params(), &before);
