@@ -51,6 +51,7 @@ pub struct Simulation {
     drives: Drives,
     ledger: Option<Ledger>,
     snapshot: Snapshot,
+    forces: Vec<Vec3>,
     /// If placing a point was the last thing done: how it was before.
     placed: Option<Placed>,
 }
@@ -105,6 +106,7 @@ impl Simulation {
             drives: Drives::default(),
             ledger: None,
             snapshot: Snapshot::default(),
+            forces: Vec::new(),
             placed: None,
             model,
             params,
@@ -206,6 +208,15 @@ impl Simulation {
     pub fn snapshot(&mut self) -> &Snapshot {
         self.snapshot.fill(&self.state);
         &self.snapshot
+    }
+
+    /// The total force on each point now, N, in the user's order, as the next step would use it; in a buffer that is used
+    /// again. See [`SymplecticEuler::forces`] for points that are held, and [`PointReading`](crate::PointReading) for
+    /// the parts of a force.
+    pub fn forces(&mut self) -> &[Vec3] {
+        self.refresh_solver();
+        self.solver.forces(&self.params, &self.state, &*self.workers, &mut self.forces);
+        &self.forces
     }
 
     /// Where the energy is now, J, and where it went as far as the ledger was on.

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
+use crate::state::{Moment, State};
 
 pub(crate) const FORCE: Force = Force {
     name: "contact",
@@ -15,6 +15,7 @@ pub(crate) const FORCE: Force = Force {
     account: Account::Contact,
     potential,
     parts,
+    at,
 };
 
 pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
@@ -39,6 +40,17 @@ fn potential(_: &Model, params: &Params, state: &State) -> f64 {
         return 0.0;
     }
     (0..state.position.len()).map(|point| stored(params, point, state.position64(point))).sum()
+}
+
+fn at(_: &Model, params: &Params, moment: Moment<'_>, point: usize) -> DVec3 {
+    if params.is_fixed(point) {
+        return DVec3::ZERO;
+    }
+    let of_plane = |plane: &crate::contact::Plane| {
+        let (spring, other) = plane.force_parts(moment.position(point), moment.velocity(point));
+        spring + other
+    };
+    params.planes.iter().map(of_plane).sum()
 }
 
 fn parts(_: &Model, params: &Params, state: &State, conservative: &mut [DVec3], rest: &mut [DVec3]) {

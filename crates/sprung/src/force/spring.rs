@@ -6,7 +6,7 @@ use super::{Account, Force, Store};
 use crate::math::COINCIDENT_SQUARED;
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
+use crate::state::{Moment, State};
 
 pub(crate) const FORCE: Force = Force {
     name: "spring",
@@ -16,6 +16,7 @@ pub(crate) const FORCE: Force = Force {
     account: Account::Dampers,
     potential,
     parts,
+    at,
 };
 
 /// ½k_s(ℓ − L)² of one spring along e = x_i − x_j, J; zero if it is cut.
@@ -35,16 +36,32 @@ pub(crate) fn pull_and_brake(params: &Params, spring: usize, axis: DVec3, apart:
     }
     let length = axis.length();
     let u = axis / length;
+    let [pull, brake] = tensions(params, spring, length, apart.dot(u));
+    (u * -pull, u * -brake)
+}
+
+/// k_s(ℓ − L) and k_d·dℓ/dt of one spring that is not cut: how hard spring and damper draw its ends together, N.
+pub(crate) fn tensions(params: &Params, spring: usize, length: f64, rate: f64) -> [f64; 2] {
     let stretch = length - f64::from(params.spring_rest_length[spring]);
-    let pull = u * -(f64::from(params.spring_stiffness[spring]) * stretch);
-    let brake = u * -(f64::from(params.spring_damping[spring]) * apart.dot(u));
-    (pull, brake)
+    [f64::from(params.spring_stiffness[spring]) * stretch, f64::from(params.spring_damping[spring]) * rate]
 }
 
 /// Σ ½k_s(ℓ − L)² over the springs that are not cut, J.
 fn potential(model: &Model, params: &Params, state: &State) -> f64 {
     let axis = |&[i, j]: &[u32; 2]| state.position64(i as usize) - state.position64(j as usize);
     model.springs.iter().enumerate().map(|(spring, ends)| stored(params, spring, axis(ends))).sum()
+}
+
+fn at(model: &Model, params: &Params, moment: Moment<'_>, point: usize) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    for &spring in model.springs_at(point) {
+        let [i, j] = model.springs[spring as usize].map(|end| end as usize);
+        let axis = moment.position(i) - moment.position(j);
+        let apart = moment.velocity(i) - moment.velocity(j);
+        let (pull, brake) = pull_and_brake(params, spring as usize, axis, apart);
+        sum += if point == i { pull + brake } else { -(pull + brake) };
+    }
+    sum
 }
 
 fn parts(model: &Model, params: &Params, state: &State, conservative: &mut [DVec3], rest: &mut [DVec3]) {

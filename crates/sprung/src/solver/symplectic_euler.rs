@@ -77,6 +77,14 @@ impl SymplecticEuler {
         largest
     }
 
+    /// The total force on each point at this state, N, as a step would use it. At a point that no force can move this is
+    /// what pulls at it, but for springs to others that are held, which a step need not know.
+    pub fn forces(&mut self, params: &Params, state: &State, workers: &dyn Workers, into: &mut Vec<Vec3>) {
+        self.accumulate(params, state, workers);
+        into.clone_from(&self.forces);
+        self.forces.fill(Vec3::ZERO);
+    }
+
     fn accumulate(&mut self, params: &Params, state: &State, workers: &dyn Workers) {
         let forces = &mut self.forces;
         self.springs.accumulate(&state.position, &state.velocity, forces, workers);
