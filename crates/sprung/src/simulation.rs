@@ -1,6 +1,6 @@
 //! The simulation: model, parameters, state and solver bundled.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -34,6 +34,14 @@ const STEPS_TO_PROGRESS: u64 = 64;
 /// println!("{}", simulation.snapshot().positions[0]);
 /// # Ok::<(), sprung::Error>(())
 /// ```
+///
+/// *The recorded run.* A simulation remembers its first state, all that was done to it, and some states on the way. Going
+/// back with [`rewind_to`](Self::rewind_to) forgets nothing: what lies beyond can be gone to again. It is the first new
+/// thing done at an earlier step, a [`step`](Self::step), a [`change`](Self::change) or a [`settle`](Self::settle), that
+/// begins another branch there: what was recorded beyond that step is dropped, and what had been done *at* that step stays,
+/// as it has already had its effect. Whoever wants to keep the earlier run, as a ghost to compare with, takes a clone
+/// before. A clone is independent from then on and shares all checkpoints, the long arrays of the parameters and what the
+/// solver has packed; its own are the current and the last good state.
 #[derive(Clone)]
 pub struct Simulation {
     model: Arc<Model>,
@@ -47,7 +55,7 @@ pub struct Simulation {
     /// Where [`reset`](Self::reset) goes.
     start: Arc<Checkpoint>,
     history: History,
-    history_bytes: usize,
+    history_budget: usize,
     drives: Drives,
     ledger: Option<Ledger>,
     snapshot: Snapshot,
@@ -102,7 +110,7 @@ impl Simulation {
             history: History::new(start.clone(), DEFAULT_HISTORY_BYTES),
             start,
             solver_is_stale: false,
-            history_bytes: DEFAULT_HISTORY_BYTES,
+            history_budget: DEFAULT_HISTORY_BYTES,
             drives: Drives::default(),
             ledger: None,
             snapshot: Snapshot::default(),
@@ -176,17 +184,34 @@ impl Simulation {
     ///
     /// What lies beyond is kept, and can be gone to, until something new is done.
     ///
+    /// A long replay can be taken in small portions, so that a front end stays responsive: first to
+    /// [`checkpoint_before`](Self::checkpoint_before) the step, which costs no replay, then forward some steps at a time. Each
+    /// portion goes on from where the last one ended, and may be abandoned for another step.
+    ///
+    /// ```
+    /// # use sprung::scene::Scene;
+    /// # let mut simulation = Scene::builtin("chain")?.simulation()?;
+    /// # for _ in 0..200 { simulation.step(0.01)?; }
+    /// let target = 150;
+    /// simulation.rewind_to(simulation.checkpoint_before(target))?;
+    /// while simulation.state().step < target {
+    ///     simulation.rewind_to(target.min(simulation.state().step + 16))?;
+    /// }
+    /// # Ok::<(), sprung::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Code::OutOfRange`] for a step that has not been recorded.
     pub fn rewind_to(&mut self, step: u64) -> Result<()> {
-        let (first, newest) = (self.history.first().state.step, self.history.newest());
-        if !(first..=newest).contains(&step) {
+        let recorded = self.recorded_steps();
+        if !recorded.contains(&step) {
+            let (first, newest) = recorded.into_inner();
             let sentence = format!("step {step} is not recorded; steps {first} to {newest} are");
             return Err(Error::new(Code::OutOfRange, sentence));
         }
         let checkpoint = self.history.before(step);
         if !(checkpoint.state.step..=step).contains(&self.state.step) {
-            let Checkpoint { state, params } = checkpoint.clone();
+            let Checkpoint { state, params } = Checkpoint::clone(checkpoint);
             self.restore(state, params, 0);
             self.redo_events(0)?;
         }
@@ -197,9 +222,25 @@ impl Simulation {
         Ok(())
     }
 
+    /// The steps that [`rewind_to`](Self::rewind_to) can go to: from the first to the newest that was reached.
+    pub fn recorded_steps(&self) -> RangeInclusive<u64> {
+        self.history.first().state.step..=self.history.newest()
+    }
+
+    /// The step of the checkpoint from which [`rewind_to`](Self::rewind_to) would replay to `step`, unless it is nearer
+    /// already. For a step that is not recorded, the checkpoint next to it.
+    pub fn checkpoint_before(&self, step: u64) -> u64 {
+        self.history.before(step).state.step
+    }
+
+    /// Memory that the recorded run takes, bytes: the first state, checkpoints and log, but for what they share.
+    pub fn history_bytes(&self) -> usize {
+        self.history.bytes()
+    }
+
     /// Back to the state and the parameters this simulation was made with, bit for bit. The log starts anew.
     pub fn reset(&mut self) {
-        self.history = History::new(self.start.clone(), self.history_bytes);
+        self.history = History::new(self.start.clone(), self.history_budget);
         let Checkpoint { state, params } = (*self.start).clone();
         self.restore(state, params, 0);
     }
@@ -231,9 +272,10 @@ impl Simulation {
     }
 
     /// Bounds the memory for checkpoints, bytes, and starts the log anew from the current state, the earliest that can then
-    /// be rewound to. Zero keeps that state only.
+    /// be rewound to. Zero keeps that state only. Checkpoints lie close together in the recent past and ever further apart
+    /// before it; every step can be gone to, but one that is long past takes longer.
     pub fn keep_history(&mut self, bytes: usize) {
-        self.history_bytes = bytes;
+        self.history_budget = bytes;
         let untouched = self.state == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
         let here = || Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() });
         let first = if untouched { self.start.clone() } else { here() };

@@ -5,6 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{scenes, steps};
+use proptest::prelude::*;
 use sprung::{Change, ContactLaw, Event, Grab, Params, Plane, SettleOptions, Simulation, Vec3};
 
 /// One of every kind of change, for a scene with at least 15 points and 14 springs.
@@ -181,6 +182,104 @@ fn parameters_that_do_not_fit_are_refused_whole() {
 }
 
 #[test]
+fn checkpoints_are_dense_in_the_recent_past_and_reach_back_to_the_first_step() {
+    let mut run = scenes::engine(&scenes::chain());
+    let room = 20;
+    run.keep_history(room * 15 * 48);
+    let newest = 30_000;
+    steps(&mut run, newest);
+    assert_eq!(run.recorded_steps(), 0..=newest);
+    // What a replay costs, in steps: at most a share of how long ago it was, and next to nothing for the last second.
+    let cost = |ago: u64| newest - ago - run.checkpoint_before(newest - ago);
+    assert!((0..500).all(|ago| cost(ago) < 200), "{:?}", (0..500).map(cost).max());
+    for ago in [1000, 3000, 10_000, 20_000, 29_000] {
+        assert!(cost(ago) <= ago / 2 + 128, "{ago} steps ago costs {} steps", cost(ago));
+    }
+    // The bound holds, but for the first state, which is kept in any case.
+    assert!(run.history_bytes() <= (room + 1) * 15 * 48, "{} bytes", run.history_bytes());
+    assert!(run.history_bytes() >= room / 2 * 15 * 48, "{} bytes", run.history_bytes());
+    let end = run.state().clone();
+    for step in [0, 29_990, 12_345] {
+        run.rewind_to(step).expect("it is recorded");
+    }
+    run.rewind_to(newest).expect("it is recorded");
+    assert_eq!(run.state(), &end);
+}
+
+#[test]
+fn a_replay_in_small_portions_ends_at_the_same_bits() {
+    let (mut run, arrived) = eventful(8 << 10);
+    let newest = *run.recorded_steps().end();
+    for target in [newest, 3, 100, newest - 1] {
+        let checkpoint = run.checkpoint_before(target);
+        assert!(checkpoint <= target);
+        run.rewind_to(checkpoint).expect("it is recorded");
+        while run.state().step < target {
+            run.rewind_to(target.min(run.state().step + 5)).expect("it is recorded");
+        }
+        if let Some(expected) = hash_after_events(&run, &arrived, target as usize) {
+            assert_eq!(run.state_hash(), expected);
+        }
+    }
+    assert_eq!(run.recorded_steps(), 0..=newest, "looking around drops nothing");
+}
+
+#[test]
+fn a_clone_is_the_ghost_of_the_earlier_run() {
+    let (mut run, arrived) = eventful(64 << 20);
+    let newest = *run.recorded_steps().end();
+    run.rewind_to(120).expect("it is recorded");
+    let mut ghost = run.clone();
+    run.change(Change::Gravity(Vec3::X)).expect("allowed");
+    steps(&mut run, 10);
+    assert_eq!(run.recorded_steps(), 0..=130);
+    assert_eq!(ghost.recorded_steps(), 0..=newest);
+    ghost.rewind_to(newest).expect("it is recorded");
+    assert_eq!(ghost.state_hash(), arrived[newest as usize]);
+}
+
+#[test]
+fn parameters_in_the_log_count_as_memory() {
+    let mut run = scenes::engine(&scenes::cloth());
+    let before = run.history_bytes();
+    let mut params = run.params().clone();
+    Arc::make_mut(&mut params.spring_stiffness)[0] = 1.0;
+    run.change(Change::Params(Arc::new(params))).expect("allowed");
+    assert!(run.history_bytes() - before >= 4 * run.model().spring_count());
+}
+
+proptest! {
+    #![proptest_config(common::cases(40))]
+
+    /// Steps, changes and seeks in any order: at every turn, the state is that of a fresh run of what the log says.
+    #[test]
+    fn seeking_and_changing_at_random_never_loses_a_bit(
+        acts in prop::collection::vec((0usize..18, 0u64..90, any::<prop::sample::Index>()), 1..12),
+        room in 0usize..12,
+    ) {
+        let mut run = scenes::engine(&scenes::chain());
+        run.keep_history(room * 15 * 48);
+        for (what, count, place) in acts {
+            match every_change().get(what) {
+                Some(change) if count % 2 == 0 => run.change(change.clone()).expect("allowed"),
+                _ => {
+                    let step = place.index(*run.recorded_steps().end() as usize + 1);
+                    run.rewind_to(step as u64).expect("it is recorded");
+                }
+            }
+            for _ in 0..count {
+                let _blown_up = run.step(run.params().dt);
+            }
+        }
+        let newest = *run.recorded_steps().end();
+        run.rewind_to(newest).expect("it is recorded");
+        let (state, params) = (run.state().clone(), run.params().clone());
+        let again = fresh_run_of(run.log(), newest);
+        prop_assert_eq!((again.state(), again.params()), (&state, &params));
+    }
+}
+
+#[test]
 fn going_on_from_the_past_drops_the_future() {
     let (mut run, arrived) = eventful(64 << 20);
     run.rewind_to(100).expect("it is recorded");
@@ -206,8 +305,14 @@ fn going_on_from_the_past_drops_the_future() {
 #[test]
 fn the_log_repeats_a_run_on_a_fresh_simulation() {
     let (run, _) = eventful(64 << 20);
+    let again = fresh_run_of(run.log(), run.state().step);
+    assert_eq!(again.state(), run.state());
+}
+
+/// The chain, with all done to it that a log says, up to a step.
+fn fresh_run_of(log: &[(u64, Event)], newest: u64) -> Simulation {
     let mut again = scenes::engine(&scenes::chain());
-    let mut log = run.log().iter().peekable();
+    let mut log = log.iter().peekable();
     loop {
         while let Some((_, event)) = log.next_if(|(at, _)| *at == again.state().step) {
             match event {
@@ -215,12 +320,11 @@ fn the_log_repeats_a_run_on_a_fresh_simulation() {
                 Event::Settle(options) => drop(again.settle(*options).expect("it settled before")),
             }
         }
-        if again.state().step == run.state().step {
-            break;
+        if again.state().step == newest {
+            return again;
         }
         steps(&mut again, 1);
     }
-    assert_eq!(again.state(), run.state());
 }
 
 #[test]
