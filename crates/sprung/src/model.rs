@@ -110,6 +110,42 @@ impl Model {
         self.bodies.iter().find(|body| body.name == name)
     }
 
+    /// What a point is called in messages: by its number within its body, "point 3 of jelly".
+    pub fn point_name(&self, point: usize) -> String {
+        match self.body_of(point) {
+            Some(body) => format!("point {} of {}", point - body.points.start, body.name),
+            None => format!("point {point}"),
+        }
+    }
+
+    /// What a spring is called in messages: by numbers within its body, "spring 12 of jelly (points 3 and 4)"; in a joint,
+    /// "spring 0 of post - deck (point 3 of post and point 0 of deck)".
+    pub fn spring_name(&self, spring: usize) -> String {
+        let Some(&[i, j]) = self.springs.get(spring) else { return format!("spring {spring}") };
+        let (i, j) = (i as usize, j as usize);
+        if let Some(body) = self.bodies.iter().find(|body| body.springs.contains(&spring)) {
+            let (spring, first) = (spring - body.springs.start, body.points.start);
+            // Springs built without a scene may belong to one body and end at another.
+            if body.points.contains(&i) && body.points.contains(&j) {
+                return format!("spring {spring} of {} (points {} and {})", body.name, i - first, j - first);
+            }
+            return format!(
+                "spring {spring} of {} ({} and {})",
+                body.name,
+                self.point_name(i),
+                self.point_name(j)
+            );
+        }
+        let joint = self.joints.iter().find(|joint| joint.springs.contains(&spring));
+        let (number, owner) =
+            joint.map_or((spring, ""), |joint| (spring - joint.springs.start, joint.name.as_str()));
+        format!("spring {number} of {owner} ({} and {})", self.point_name(i), self.point_name(j))
+    }
+
+    fn body_of(&self, point: usize) -> Option<&Body> {
+        self.bodies.iter().find(|body| body.points.contains(&point))
+    }
+
     /// The name of the body or joint that a spring belongs to.
     pub fn spring_owner(&self, spring: usize) -> &str {
         let body = self.bodies.iter().find(|body| body.springs.contains(&spring)).map(|body| &body.name);
