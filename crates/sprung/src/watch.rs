@@ -113,7 +113,7 @@ impl BlowUp {
     pub fn suggested_substeps(&self, params: &Params) -> Option<(u32, f64)> {
         let frame = self.dt * f64::from(params.substeps);
         let substeps = (frame / self.suggested_dt()?).ceil();
-        if !(substeps <= f64::from(*SUBSTEPS_RANGE.end())) {
+        if substeps > f64::from(*SUBSTEPS_RANGE.end()) {
             return None;
         }
         let dt = frame / substeps;
