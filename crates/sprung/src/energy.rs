@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use crate::force::{self, Account, FORCES, Store};
+use crate::hand::Hand;
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -16,7 +17,7 @@ use crate::state::State;
 pub struct LedgerSums {
     /// Kinetic and potential energy at the start.
     pub start: f64,
-    /// Work put in by external forces, grabs and changes of the parameters. Always kept.
+    /// Work put in by external forces, grabs, carrying hands and changes of the parameters. Always kept.
     pub work_in: f64,
     /// Energy taken out by the springs' dampers, while the ledger is on.
     pub lost_in_dampers: f64,
@@ -34,9 +35,9 @@ pub struct LedgerSums {
 /// `sums.lost_in_contact` + `sums.integrator_error`, to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Σ ½mv² over the points that can move.
+    /// Σ ½mv² over the points that forces can move.
     pub kinetic: f64,
-    /// −Σ m g·x over the points that can move.
+    /// −Σ m g·x over the points that forces can move.
     pub gravitational: f64,
     /// Σ ½k_s(ℓ − L)².
     pub elastic: f64,
@@ -68,10 +69,27 @@ impl Energy {
     }
 }
 
-/// Σ ½mv² over the points that can move, J.
+/// Σ ½mv² over the points that can move, J. A point that is carried moves, but its speed is the hand's to give and to take.
 pub(crate) fn kinetic(params: &Params, state: &State) -> f64 {
-    let masses = params.point_mass.iter().enumerate();
-    masses.map(|(point, &mass)| 0.5 * f64::from(mass) * state.velocity64(point).length_squared()).sum()
+    (0..params.point_mass.len()).map(|point| kinetic_of(params, state, point)).sum()
+}
+
+fn kinetic_of(params: &Params, state: &State, point: usize) -> f64 {
+    let mass = if params.carried.contains_key(&point) { 0.0 } else { f64::from(params.point_mass[point]) };
+    0.5 * mass * state.velocity64(point).length_squared()
+}
+
+/// All energy in which one point takes part, J: what a change of this point alone can alter.
+pub(crate) fn around(model: &Model, params: &Params, state: &State, point: usize) -> f64 {
+    let position = state.position64(point);
+    let elastic = model.springs_at(point).iter().map(|&spring| {
+        let [i, j] = model.springs[spring as usize].map(|end| state.position64(end as usize));
+        force::spring::stored(params, spring as usize, i - j)
+    });
+    kinetic_of(params, state, point)
+        + force::gravity::stored(params, point, position)
+        + force::contact::stored(params, point, position)
+        + elastic.sum::<f64>()
 }
 
 /// The works of one step. Holds the forces at its beginning until its end is known.
@@ -103,17 +121,26 @@ impl Ledger {
         }
     }
 
-    /// After it: every force's work, booked. `Drives` books what outside forces put in.
-    pub fn end(&mut self, model: &Model, params: &Params, state: &mut State) {
+    /// After it: every force's work, booked. `Drives` books what outside forces put in, and has found how much of that a
+    /// carrying hand stored in springs, J.
+    pub fn end(&mut self, model: &Model, params: &Params, state: &mut State, stored_by_hand: f64) {
         let half_dt = 0.5 * f64::from(params.dt as f32);
         for (point, velocity) in self.velocity.iter_mut().enumerate() {
             *velocity = (*velocity + state.velocity64(point)) * half_dt;
         }
         let work =
             |forces: &[DVec3]| forces.iter().zip(&self.velocity).map(|(f, path)| f.dot(*path)).sum::<f64>();
+        // What springs give to a carried point, the hand takes: all of it is in `stored_by_hand`.
+        let free = |(point, _): &(usize, &DVec3)| !params.carried.contains_key(point);
+        let work_on_free = |forces: &[DVec3]| {
+            let forces = forces.iter().enumerate().filter(free);
+            forces.map(|(point, force)| force.dot(self.velocity[point])).sum::<f64>()
+        };
         let mut sums = state.ledger;
+        sums.integrator_error -= stored_by_hand;
         for (force, (account, potential, conservative, rest)) in FORCES.iter().zip(&self.accounts) {
-            sums.integrator_error += (force.potential)(model, params, state) - potential + work(conservative);
+            let stored = (force.potential)(model, params, state) - potential;
+            sums.integrator_error += stored + work_on_free(conservative);
             match account {
                 Account::Dampers => sums.lost_in_dampers -= work(rest),
                 Account::Contact => sums.lost_in_contact -= work(rest),
@@ -124,24 +151,32 @@ impl Ledger {
     }
 }
 
-/// The work that external forces and grabs put in, which is kept even while the ledger is off: they act on few points.
+/// The work that external forces, grabs and carrying hands put in, which is kept even while the ledger is off: they act on
+/// few points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Drives {
     /// Point, force on it and velocity at the beginning of the step.
     driven: Vec<(usize, DVec3, DVec3)>,
+    hand: Hand,
 }
 
 impl Drives {
-    pub fn begin(&mut self, params: &Params, state: &State) {
+    pub fn begin(&mut self, model: &Model, params: &Params, state: &State) {
         self.driven.clear();
         let forces = force::external::forces(params).chain(force::grab::forces(params, state));
-        self.driven.extend(forces.map(|(point, force)| (point, force, state.velocity64(point))));
+        let free = forces.filter(|&(point, _)| !params.is_fixed(point));
+        self.driven.extend(free.map(|(point, force)| (point, force, state.velocity64(point))));
+        self.hand.begin(model, params, state);
     }
 
-    pub fn end(&self, params: &Params, state: &mut State) {
+    /// Books the works; gives the part of them that hands stored in springs, J.
+    pub fn end(&self, model: &Model, params: &Params, state: &mut State) -> f64 {
         let half_dt = 0.5 * f64::from(params.dt as f32);
         for &(point, force, velocity) in &self.driven {
             state.ledger.work_in += force.dot(velocity + state.velocity64(point)) * half_dt;
         }
+        let (stored, braked) = self.hand.work(model, params, state);
+        state.ledger.work_in += stored + braked;
+        stored
     }
 }

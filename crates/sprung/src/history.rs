@@ -9,8 +9,8 @@ use crate::state::State;
 /// Memory for checkpoints unless said otherwise, bytes. The first state is always kept.
 pub const DEFAULT_HISTORY_BYTES: usize = 64 << 20;
 
-/// Steps between checkpoints at first; the gap doubles whenever the memory is used up.
-const FIRST_GAP: u64 = 64;
+/// Steps between the newest checkpoints; older ones lie further apart when the memory is used up.
+const GAP: u64 = 64;
 
 /// Checkpoints kept at the most.
 const MOST_CHECKPOINTS: usize = 256;
@@ -24,17 +24,36 @@ pub enum Event {
     Settle(SettleOptions),
 }
 
+impl Event {
+    /// Whether this leaves nothing of an event that came just before it.
+    fn replaces(&self, before: &Self) -> bool {
+        use Change::{Carry, Grab, Place};
+        let (Self::Change(new), Self::Change(old)) = (self, before) else { return false };
+        match (new, old) {
+            (Grab(new), Grab(old)) => new.point == old.point,
+            // Letting go is another matter: the point keeps the velocity that it was carried with.
+            (Carry(new, Some(_)), Carry(old, Some(_))) | (Place(new, _), Place(old, _)) => new == old,
+            _ => false,
+        }
+    }
+}
+
 /// A run: a first state, what was done to it and when, and some states on the way.
 ///
-/// A checkpoint at step s is the state on arriving there, before the events logged for s.
+/// A checkpoint at step s is the state on arriving there, before the events logged for s. They are shared by clones.
+///
+/// A person looks at the last seconds most, so checkpoints lie every 64 steps there, and the older they are the further
+/// apart: when the memory is used up, that one goes whose neighbours would then lie nearest to each other in proportion
+/// to their age. Gaps then grow like age, so that n checkpoints reach back exponentially far, and what a replay costs is a
+/// share of how long ago it was.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     first: Arc<Checkpoint>,
-    checkpoints: Vec<Checkpoint>,
+    /// In ascending order of the step.
+    checkpoints: Vec<Arc<Checkpoint>>,
     /// In ascending order of the step.
     log: Vec<(u64, Event)>,
     budget: usize,
-    gap: u64,
     newest: u64,
 }
 
@@ -48,7 +67,7 @@ pub(crate) struct Checkpoint {
 impl History {
     pub fn new(first: Arc<Checkpoint>, bytes: usize) -> Self {
         let newest = first.state.step;
-        Self { first, checkpoints: Vec::new(), log: Vec::new(), budget: bytes, gap: FIRST_GAP, newest }
+        Self { first, checkpoints: Vec::new(), log: Vec::new(), budget: bytes, newest }
     }
 
     pub fn first(&self) -> &Arc<Checkpoint> {
@@ -73,24 +92,18 @@ impl History {
         }
     }
 
-    /// Notes what was done. Of a grab that is dragged along between two steps only the last place counts.
+    /// Notes what was done. Of a point that is dragged along between two steps only the last grab, carry or place counts.
     pub fn record(&mut self, step: u64, event: Event) {
-        if let (Event::Change(Change::Grab(new)), Some((at, Event::Change(Change::Grab(old))))) =
-            (&event, self.log.last_mut())
-            && *at == step
-            && old.point == new.point
-        {
-            *old = *new;
-            return;
+        match self.log.last_mut() {
+            Some((at, last)) if *at == step && event.replaces(last) => *last = event,
+            _ => self.log.push((step, event)),
         }
-        self.log.push((step, event));
     }
 
     /// A step was taken.
     pub fn arrived(&mut self, state: &State, params: &Arc<Params>) {
         self.newest = state.step;
-        let since = state.step - self.first.state.step;
-        if !since.is_multiple_of(self.gap) {
+        if !(state.step - self.first.state.step).is_multiple_of(GAP) {
             return;
         }
         let last = self.checkpoints.last().unwrap_or(&self.first);
@@ -98,20 +111,29 @@ impl History {
         if needed > self.budget {
             return;
         }
-        while self.bytes() + needed > self.budget || self.checkpoints.len() >= MOST_CHECKPOINTS {
-            // Every other one, so that the rest lie twice as far apart.
-            self.gap *= 2;
-            let (first, gap) = (self.first.state.step, self.gap);
-            self.checkpoints.retain(|checkpoint| (checkpoint.state.step - first).is_multiple_of(gap));
+        while self.checkpoint_bytes() + needed > self.budget || self.checkpoints.len() >= MOST_CHECKPOINTS {
+            let Some(dispensable) = self.most_dispensable(state.step) else { return };
+            self.checkpoints.remove(dispensable);
         }
-        if since.is_multiple_of(self.gap) {
-            self.checkpoints.push(Checkpoint { state: state.clone(), params: params.clone() });
-        }
+        self.checkpoints.push(Arc::new(Checkpoint { state: state.clone(), params: params.clone() }));
+    }
+
+    /// The checkpoint without which the gap left behind is smallest in proportion to how long ago it began; a checkpoint
+    /// at step `next` is about to follow.
+    fn most_dispensable(&self, next: u64) -> Option<usize> {
+        let step = |index: usize| self.checkpoints[index].state.step;
+        let share = |index: usize| {
+            let before = if index == 0 { self.first.state.step } else { step(index - 1) };
+            let after = if index + 1 == self.checkpoints.len() { next } else { step(index + 1) };
+            (after - before) as f64 / (next - before) as f64
+        };
+        (0..self.checkpoints.len()).min_by(|&a, &b| share(a).total_cmp(&share(b)))
     }
 
     /// The last checkpoint at or before `step`.
     pub fn before(&self, step: u64) -> &Checkpoint {
-        self.checkpoints.iter().rev().find(|checkpoint| checkpoint.state.step <= step).unwrap_or(&self.first)
+        let later = self.checkpoints.partition_point(|checkpoint| checkpoint.state.step <= step);
+        if later == 0 { &self.first } else { &self.checkpoints[later - 1] }
     }
 
     /// The events logged for `step`, in order.
@@ -121,8 +143,22 @@ impl History {
         self.log[begin..end].iter().map(|(_, event)| event.clone()).collect()
     }
 
+    /// Memory of everything that is kept, bytes: the first state, the checkpoints, and the log.
+    pub fn bytes(&self) -> usize {
+        let mut before = &self.first.params;
+        let mut bytes = size(&self.first.state, before, before) + self.checkpoint_bytes();
+        for (_, event) in &self.log {
+            bytes += size_of::<(u64, Event)>();
+            if let Event::Change(Change::Params(params)) = event {
+                bytes += params.bytes_apart_from(before);
+                before = params;
+            }
+        }
+        bytes
+    }
+
     /// Memory of the checkpoints, bytes.
-    fn bytes(&self) -> usize {
+    fn checkpoint_bytes(&self) -> usize {
         let mut before = &self.first.params;
         let mut bytes = 0;
         for checkpoint in &self.checkpoints {

@@ -6,6 +6,14 @@ use glam::{DMat3, DVec3, Vec3};
 /// Above it no square in a length is a denormal number.
 pub(crate) const COINCIDENT_SQUARED: f32 = 1e-30;
 
+/// Coordinates smaller than this are taken as zero, m: no denormal number ever enters a step.
+const NEGLIGIBLE: f32 = 1e-30;
+
+/// A position without coordinates that are too small to matter.
+pub(crate) fn without_negligible(position: Vec3) -> Vec3 {
+    Vec3::from_array(position.to_array().map(|value| if value.abs() < NEGLIGIBLE { 0.0 } else { value }))
+}
+
 /// a.x·b.x + a.y·b.y + a.z·b.z, summed from left to right.
 #[inline(always)]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {

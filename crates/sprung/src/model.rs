@@ -1,6 +1,7 @@
 //! The model: what is joined to what. Immutable once built, shared by every run that uses it.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// A named part of a model: a range of its points, and of the springs among them.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +55,7 @@ pub struct Model {
     pub(crate) bodies: Vec<Body>,
     pub(crate) joints: Vec<Joint>,
     pub(crate) surfaces: Vec<Surface>,
+    pub(crate) springs_at: SpringsAt,
 }
 
 impl Model {
@@ -77,6 +79,17 @@ impl Model {
         &self.spring_rest_length
     }
 
+    /// The springs that end at a point, in ascending order; none if there is no such point.
+    ///
+    /// The table behind it is made when it is first asked for: 8 bytes per spring and per point.
+    pub fn springs_at(&self, point: usize) -> &[u32] {
+        let table = self.springs_at.0.get_or_init(|| Incidence::new(self.point_count, &self.springs));
+        match table.starts.get(point..).and_then(|starts| starts.first_chunk()) {
+            Some(&[start, end]) => &table.springs[start..end],
+            None => &[],
+        }
+    }
+
     /// The named bodies; together they hold every point, in order.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
@@ -97,10 +110,85 @@ impl Model {
         self.bodies.iter().find(|body| body.name == name)
     }
 
+    /// What a point is called in messages: by its number within its body, "point 3 of jelly".
+    pub fn point_name(&self, point: usize) -> String {
+        match self.body_of(point) {
+            Some(body) => format!("point {} of {}", point - body.points.start, body.name),
+            None => format!("point {point}"),
+        }
+    }
+
+    /// What a spring is called in messages: by numbers within its body, "spring 12 of jelly (points 3 and 4)"; in a joint,
+    /// "spring 0 of post - deck (point 3 of post and point 0 of deck)".
+    pub fn spring_name(&self, spring: usize) -> String {
+        let Some(&[i, j]) = self.springs.get(spring) else { return format!("spring {spring}") };
+        let (i, j) = (i as usize, j as usize);
+        if let Some(body) = self.bodies.iter().find(|body| body.springs.contains(&spring)) {
+            let (spring, first) = (spring - body.springs.start, body.points.start);
+            // Springs built without a scene may belong to one body and end at another.
+            if body.points.contains(&i) && body.points.contains(&j) {
+                return format!("spring {spring} of {} (points {} and {})", body.name, i - first, j - first);
+            }
+            return format!(
+                "spring {spring} of {} ({} and {})",
+                body.name,
+                self.point_name(i),
+                self.point_name(j)
+            );
+        }
+        let joint = self.joints.iter().find(|joint| joint.springs.contains(&spring));
+        let (number, owner) =
+            joint.map_or((spring, ""), |joint| (spring - joint.springs.start, joint.name.as_str()));
+        format!("spring {number} of {owner} ({} and {})", self.point_name(i), self.point_name(j))
+    }
+
+    fn body_of(&self, point: usize) -> Option<&Body> {
+        self.bodies.iter().find(|body| body.points.contains(&point))
+    }
+
     /// The name of the body or joint that a spring belongs to.
     pub fn spring_owner(&self, spring: usize) -> &str {
         let body = self.bodies.iter().find(|body| body.springs.contains(&spring)).map(|body| &body.name);
         let joint = self.joints.iter().find(|joint| joint.springs.contains(&spring)).map(|joint| &joint.name);
         body.or(joint).map_or("", |name| name)
+    }
+}
+
+/// A table that follows from the rest of the model: two models are equal whether or not they have made it yet.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SpringsAt(OnceLock<Incidence>);
+
+impl PartialEq for SpringsAt {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Springs sorted by point.
+#[derive(Clone, Debug)]
+struct Incidence {
+    /// Where each point's springs begin, and the total at the end.
+    starts: Vec<usize>,
+    springs: Vec<u32>,
+}
+
+impl Incidence {
+    fn new(points: usize, springs: &[[u32; 2]]) -> Self {
+        let mut starts = vec![0usize; points + 1];
+        for &end in springs.iter().flatten() {
+            starts[end as usize + 1] += 1;
+        }
+        for point in 0..points {
+            starts[point + 1] += starts[point];
+        }
+        let mut next = starts.clone();
+        let mut sorted = vec![0u32; 2 * springs.len()];
+        for (spring, ends) in springs.iter().enumerate() {
+            for &end in ends {
+                sorted[next[end as usize]] = spring as u32;
+                next[end as usize] += 1;
+            }
+        }
+        Self { starts, springs: sorted }
     }
 }

@@ -67,9 +67,11 @@ pub struct Params {
     pub external_forces: BTreeMap<usize, Vec3>,
     /// Pulls on single points.
     pub grabs: Vec<Grab>,
+    /// Points that a hand carries along, and at which velocity, m/s: they move so whatever pulls at them.
+    pub carried: BTreeMap<usize, Vec3>,
 }
 
-/// One change of the parameters, as the run log keeps it.
+/// One change of the parameters, as the run log keeps it; [`Place`](Self::Place) alone changes the state instead.
 ///
 /// Points and springs are given as ranges of indices: `7..8` is one of them, `body.points.clone()` a body's,
 /// `0..model.spring_count()` all.
@@ -101,17 +103,28 @@ pub enum Change {
     Grab(Grab),
     /// Lets a grabbed point go.
     Release(usize),
+    /// Carries a point along at this velocity, m/s, whatever pulls at it and even if it is pinned; `None` lets it go: it
+    /// keeps the velocity, or stops if it is pinned or has no mass.
+    Carry(usize, Option<Vec3>),
+    /// Puts a point there at once, m, and at rest, unless it is being carried.
+    Place(usize, Vec3),
+    /// All parameters at once: undo, redo, back to the scene's own values. Cheap, as the long arrays are shared.
+    Params(Arc<Params>),
 }
 
 impl Params {
-    /// 1/m of each point, 1/kg; zero for one that is fixed by its zero mass or by a pin.
+    /// 1/m of each point, 1/kg; zero for one that no force can move: see [`is_fixed`](Self::is_fixed).
     pub fn inverse_mass(&self, point: usize) -> f32 {
-        let mass = self.point_mass[point];
-        if mass == 0.0 || self.point_pinned[point] { 0.0 } else { 1.0 / mass }
+        if self.is_fixed(point) { 0.0 } else { 1.0 / self.point_mass[point] }
     }
 
-    /// Whether a point is held in space.
+    /// Whether no force can move a point: it has zero mass, is pinned, or is carried by a hand.
     pub fn is_fixed(&self, point: usize) -> bool {
+        self.is_anchored(point) || self.carried.contains_key(&point)
+    }
+
+    /// Whether a point stays where it is as long as no hand carries it: it has zero mass or is pinned.
+    pub fn is_anchored(&self, point: usize) -> bool {
         self.point_mass[point] == 0.0 || self.point_pinned[point]
     }
 
@@ -119,6 +132,16 @@ impl Params {
     pub fn is_live(&self, model: &Model, spring: usize) -> bool {
         let an_end_is_free = model.springs[spring].iter().any(|&point| !self.is_fixed(point as usize));
         an_end_is_free && !self.spring_cut[spring]
+    }
+
+    /// Whether masses, pins and springs are the very arrays of `other`, and not merely equal ones.
+    pub(crate) fn shares_arrays_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.point_mass, &other.point_mass)
+            && Arc::ptr_eq(&self.point_pinned, &other.point_pinned)
+            && Arc::ptr_eq(&self.spring_stiffness, &other.spring_stiffness)
+            && Arc::ptr_eq(&self.spring_damping, &other.spring_damping)
+            && Arc::ptr_eq(&self.spring_rest_length, &other.spring_rest_length)
+            && Arc::ptr_eq(&self.spring_cut, &other.spring_cut)
     }
 
     /// Memory of the long arrays that are not shared with `other`, bytes.
@@ -161,6 +184,10 @@ impl Params {
         for (&point, &force) in &self.external_forces {
             check_index("external_forces", point, points)?;
             check_vector("external_forces", force)?;
+        }
+        for (&point, &velocity) in &self.carried {
+            check_index("carried", point, points)?;
+            check_vector("carried", velocity)?;
         }
         self.grabs.iter().try_for_each(|grab| check_grab(grab, points))
     }
@@ -230,6 +257,23 @@ impl Params {
             Change::Release(point) => {
                 check_index("release", *point, points)?;
                 self.grabs.retain(|grab| grab.point != *point);
+            }
+            Change::Carry(point, velocity) => {
+                check_index("carry", *point, points)?;
+                check_vector("carry", velocity.unwrap_or_default())?;
+                match velocity {
+                    Some(velocity) => self.carried.insert(*point, *velocity),
+                    None => self.carried.remove(point),
+                };
+            }
+            // Where a point is belongs to the state, which `Simulation` changes.
+            Change::Place(point, position) => {
+                check_index("place", *point, points)?;
+                check_vector("place", *position)?;
+            }
+            Change::Params(params) => {
+                params.validate(model)?;
+                self.clone_from(params);
             }
         }
         Ok(())

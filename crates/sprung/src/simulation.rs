@@ -1,6 +1,6 @@
 //! The simulation: model, parameters, state and solver bundled.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
 use crate::history::{Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
+use crate::math::without_negligible;
 use crate::model::Model;
 use crate::params::{Change, Params, check_vector};
 use crate::settle::{SettleOptions, Settled};
@@ -33,6 +34,14 @@ const STEPS_TO_PROGRESS: u64 = 64;
 /// println!("{}", simulation.snapshot().positions[0]);
 /// # Ok::<(), sprung::Error>(())
 /// ```
+///
+/// *The recorded run.* A simulation remembers its first state, all that was done to it, and some states on the way. Going
+/// back with [`rewind_to`](Self::rewind_to) forgets nothing: what lies beyond can be gone to again. It is the first new
+/// thing done at an earlier step, a [`step`](Self::step), a [`change`](Self::change) or a [`settle`](Self::settle), that
+/// begins another branch there: what was recorded beyond that step is dropped, and what had been done *at* that step stays,
+/// as it has already had its effect. Whoever wants to keep the earlier run, as a ghost to compare with, takes a clone
+/// before. A clone is independent from then on and shares all checkpoints, the long arrays of the parameters and what the
+/// solver has packed; its own are the current and the last good state.
 #[derive(Clone)]
 pub struct Simulation {
     model: Arc<Model>,
@@ -46,10 +55,23 @@ pub struct Simulation {
     /// Where [`reset`](Self::reset) goes.
     start: Arc<Checkpoint>,
     history: History,
-    history_bytes: usize,
+    history_budget: usize,
     drives: Drives,
     ledger: Option<Ledger>,
     snapshot: Snapshot,
+    forces: Vec<Vec3>,
+    /// If placing a point was the last thing done: how it was before.
+    placed: Option<Placed>,
+}
+
+/// A point before it was placed. A hand that moves a point about while time stands still places it over and over; each
+/// time it is taken from where it was at first, so that the last place alone counts, to the bit.
+#[derive(Clone, Copy)]
+struct Placed {
+    point: usize,
+    position: [Vec3; 2],
+    velocity: [Vec3; 2],
+    work_in: f64,
 }
 
 impl Simulation {
@@ -62,7 +84,7 @@ impl Simulation {
         let model = model.into();
         params.validate(&model)?;
         check_state(&model, &state)?;
-        stop_fixed_points(&params, &mut state);
+        hold_fixed_points(&params, &mut state);
         let start = Energy::of(&model, &params, &state).total();
         state.ledger = LedgerSums { start, ..LedgerSums::default() };
         Self::resume(model, params, state)
@@ -77,7 +99,7 @@ impl Simulation {
         let model = model.into();
         params.validate(&model)?;
         check_state(&model, &state)?;
-        stop_fixed_points(&params, &mut state);
+        hold_fixed_points(&params, &mut state);
         state.check_clock(params.dt);
         let params = Arc::new(params);
         let start = Arc::new(Checkpoint { state: state.clone(), params: params.clone() });
@@ -88,10 +110,12 @@ impl Simulation {
             history: History::new(start.clone(), DEFAULT_HISTORY_BYTES),
             start,
             solver_is_stale: false,
-            history_bytes: DEFAULT_HISTORY_BYTES,
+            history_budget: DEFAULT_HISTORY_BYTES,
             drives: Drives::default(),
             ledger: None,
             snapshot: Snapshot::default(),
+            forces: Vec::new(),
+            placed: None,
             model,
             params,
             state,
@@ -160,17 +184,34 @@ impl Simulation {
     ///
     /// What lies beyond is kept, and can be gone to, until something new is done.
     ///
+    /// A long replay can be taken in small portions, so that a front end stays responsive: first to
+    /// [`checkpoint_before`](Self::checkpoint_before) the step, which costs no replay, then forward some steps at a time. Each
+    /// portion goes on from where the last one ended, and may be abandoned for another step.
+    ///
+    /// ```
+    /// # use sprung::scene::Scene;
+    /// # let mut simulation = Scene::builtin("chain")?.simulation()?;
+    /// # for _ in 0..200 { simulation.step(0.01)?; }
+    /// let target = 150;
+    /// simulation.rewind_to(simulation.checkpoint_before(target))?;
+    /// while simulation.state().step < target {
+    ///     simulation.rewind_to(target.min(simulation.state().step + 16))?;
+    /// }
+    /// # Ok::<(), sprung::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Code::OutOfRange`] for a step that has not been recorded.
     pub fn rewind_to(&mut self, step: u64) -> Result<()> {
-        let (first, newest) = (self.history.first().state.step, self.history.newest());
-        if !(first..=newest).contains(&step) {
+        let recorded = self.recorded_steps();
+        if !recorded.contains(&step) {
+            let (first, newest) = recorded.into_inner();
             let sentence = format!("step {step} is not recorded; steps {first} to {newest} are");
             return Err(Error::new(Code::OutOfRange, sentence));
         }
         let checkpoint = self.history.before(step);
         if !(checkpoint.state.step..=step).contains(&self.state.step) {
-            let Checkpoint { state, params } = checkpoint.clone();
+            let Checkpoint { state, params } = Checkpoint::clone(checkpoint);
             self.restore(state, params, 0);
             self.redo_events(0)?;
         }
@@ -181,9 +222,25 @@ impl Simulation {
         Ok(())
     }
 
+    /// The steps that [`rewind_to`](Self::rewind_to) can go to: from the first to the newest that was reached.
+    pub fn recorded_steps(&self) -> RangeInclusive<u64> {
+        self.history.first().state.step..=self.history.newest()
+    }
+
+    /// The step of the checkpoint from which [`rewind_to`](Self::rewind_to) would replay to `step`, unless it is nearer
+    /// already. For a step that is not recorded, the checkpoint next to it.
+    pub fn checkpoint_before(&self, step: u64) -> u64 {
+        self.history.before(step).state.step
+    }
+
+    /// Memory that the recorded run takes, bytes: the first state, checkpoints and log, but for what they share.
+    pub fn history_bytes(&self) -> usize {
+        self.history.bytes()
+    }
+
     /// Back to the state and the parameters this simulation was made with, bit for bit. The log starts anew.
     pub fn reset(&mut self) {
-        self.history = History::new(self.start.clone(), self.history_bytes);
+        self.history = History::new(self.start.clone(), self.history_budget);
         let Checkpoint { state, params } = (*self.start).clone();
         self.restore(state, params, 0);
     }
@@ -192,6 +249,15 @@ impl Simulation {
     pub fn snapshot(&mut self) -> &Snapshot {
         self.snapshot.fill(&self.state);
         &self.snapshot
+    }
+
+    /// The total force on each point now, N, in the user's order, as the next step would use it; in a buffer that is used
+    /// again. See [`SymplecticEuler::forces`] for points that are held, and [`PointReading`](crate::PointReading) for
+    /// the parts of a force.
+    pub fn forces(&mut self) -> &[Vec3] {
+        self.refresh_solver();
+        self.solver.forces(&self.params, &self.state, &*self.workers, &mut self.forces);
+        &self.forces
     }
 
     /// Where the energy is now, J, and where it went as far as the ledger was on.
@@ -206,13 +272,15 @@ impl Simulation {
     }
 
     /// Bounds the memory for checkpoints, bytes, and starts the log anew from the current state, the earliest that can then
-    /// be rewound to. Zero keeps that state only.
+    /// be rewound to. Zero keeps that state only. Checkpoints lie close together in the recent past and ever further apart
+    /// before it; every step can be gone to, but one that is long past takes longer.
     pub fn keep_history(&mut self, bytes: usize) {
-        self.history_bytes = bytes;
+        self.history_budget = bytes;
         let untouched = self.state == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
         let here = || Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() });
         let first = if untouched { self.start.clone() } else { here() };
         self.history = History::new(first, bytes);
+        self.placed = None;
         self.watch.restart(&self.state, &self.params, 0);
     }
 
@@ -255,14 +323,15 @@ impl Simulation {
     /// One step, watched; on a blow-up the last good state is restored and what came after it is forgotten.
     fn advance(&mut self) -> Result<()> {
         self.refresh_solver();
-        self.drives.begin(&self.params, &self.state);
+        self.placed = None;
+        self.drives.begin(&self.model, &self.params, &self.state);
         if let Some(ledger) = &mut self.ledger {
             ledger.begin(&self.model, &self.params, &self.state);
         }
         let finite = self.solver.step(&self.params, &mut self.state, &*self.workers);
-        self.drives.end(&self.params, &mut self.state);
+        let stored_by_hand = self.drives.end(&self.model, &self.params, &mut self.state);
         if let Some(ledger) = &mut self.ledger {
-            ledger.end(&self.model, &self.params, &mut self.state);
+            ledger.end(&self.model, &self.params, &mut self.state, stored_by_hand);
         }
         match self.watch.look(&self.model, &self.params, &mut self.state, finite) {
             None => Ok(()),
@@ -277,18 +346,53 @@ impl Simulation {
     }
 
     fn change_unlogged(&mut self, change: &Change) -> Result<()> {
+        if let Change::Carry(point, _) | Change::Place(point, _) = change {
+            return self.move_point(*point, change);
+        }
         let before = moves_energy(change).then(|| self.energy().total());
+        let old = self.params.clone();
         Arc::make_mut(&mut self.params).apply(&self.model, change)?;
-        self.solver_is_stale |= is_packed(change);
-        if matches!(change, Change::Dt(_)) {
+        self.placed = None;
+        self.solver_is_stale |=
+            !self.params.shares_arrays_with(&old) || !self.params.carried.keys().eq(old.carried.keys());
+        if self.params.dt != old.dt {
             self.state.restart_clock();
         }
-        if matches!(change, Change::Mass(..) | Change::Pin(..)) {
-            stop_fixed_points(&self.params, &mut self.state);
+        if matches!(change, Change::Mass(..) | Change::Pin(..) | Change::Params(_)) {
+            hold_fixed_points(&self.params, &mut self.state);
         }
         if let Some(before) = before {
             // What a change adds to the energy is work put in, not energy from nowhere.
             self.state.ledger.work_in += self.energy().total() - before;
+        }
+        Ok(())
+    }
+
+    /// Carries, lets go or places one point: many times a second, so only what this point can alter is looked at.
+    fn move_point(&mut self, point: usize, change: &Change) -> Result<()> {
+        let old = self.params.clone();
+        Arc::make_mut(&mut self.params).apply(&self.model, change)?;
+        let earlier = self.placed.take().filter(|placed| placed.point == point);
+        if let Change::Place(_, position) = change {
+            if let Some(placed) = earlier {
+                placed.undo(&mut self.state);
+            }
+            self.placed = Some(Placed::new(point, &self.state));
+            let before = energy::around(&self.model, &old, &self.state, point);
+            self.state.position[point] = without_negligible(*position);
+            self.state.position_low[point] = Vec3::ZERO;
+            self.state.velocity[point] = Vec3::ZERO;
+            self.state.velocity_low[point] = Vec3::ZERO;
+            hold(&self.params, &mut self.state, point);
+            self.state.ledger.work_in +=
+                energy::around(&self.model, &self.params, &self.state, point) - before;
+        } else {
+            // The hand takes the point's own energy over, or gives it some.
+            let before = energy::around(&self.model, &old, &self.state, point);
+            hold(&self.params, &mut self.state, point);
+            self.solver.refresh_point(&self.params, point);
+            self.state.ledger.work_in +=
+                energy::around(&self.model, &self.params, &self.state, point) - before;
         }
         Ok(())
     }
@@ -313,6 +417,8 @@ impl Simulation {
             self.state = before;
             return settled;
         }
+        self.placed = None;
+        hold_fixed_points(&self.params, &mut self.state);
         // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
         let energy_before = Energy::of(&self.model, &self.params, &before).total();
         self.state.step = before.step;
@@ -375,6 +481,7 @@ impl Simulation {
             self.solver_is_stale = true;
         }
         self.state = state;
+        self.placed = None;
         self.watch.restart(&self.state, &self.params, events);
     }
 
@@ -401,14 +508,11 @@ impl std::fmt::Debug for Simulation {
 
 /// Whether a change can alter the energy of the current state.
 fn moves_energy(change: &Change) -> bool {
-    use Change::{Cut, Gravity, Mass, Pin, Planes, RestScale, Stiffness};
-    matches!(change, Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..))
-}
-
-/// Whether a change alters what the solver has packed: masses and springs.
-fn is_packed(change: &Change) -> bool {
-    use Change::{Cut, Damping, Mass, Pin, RestScale, Stiffness};
-    matches!(change, Mass(..) | Pin(..) | Stiffness(..) | Damping(..) | RestScale(..) | Cut(..))
+    use Change::{Cut, Gravity, Mass, Params, Pin, Planes, RestScale, Stiffness};
+    matches!(
+        change,
+        Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..) | Params(_)
+    )
 }
 
 /// A thousandth of the largest weight, N.
@@ -423,10 +527,32 @@ fn stop(state: &mut State) {
     state.velocity_low.fill(Vec3::ZERO);
 }
 
-fn stop_fixed_points(params: &Params, state: &mut State) {
-    for point in (0..state.velocity.len()).filter(|&point| params.is_fixed(point)) {
-        state.velocity[point] = Vec3::ZERO;
+/// Points that no force can move stand still, or move as the hand does that carries them.
+fn hold_fixed_points(params: &Params, state: &mut State) {
+    (0..state.velocity.len()).for_each(|point| hold(params, state, point));
+}
+
+fn hold(params: &Params, state: &mut State, point: usize) {
+    if params.is_fixed(point) {
+        state.velocity[point] = params.carried.get(&point).copied().unwrap_or_default();
         state.velocity_low[point] = Vec3::ZERO;
+    }
+}
+
+impl Placed {
+    fn new(point: usize, state: &State) -> Self {
+        Self {
+            point,
+            position: [state.position[point], state.position_low[point]],
+            velocity: [state.velocity[point], state.velocity_low[point]],
+            work_in: state.ledger.work_in,
+        }
+    }
+
+    fn undo(self, state: &mut State) {
+        [state.position[self.point], state.position_low[self.point]] = self.position;
+        [state.velocity[self.point], state.velocity_low[self.point]] = self.velocity;
+        state.ledger.work_in = self.work_in;
     }
 }
 

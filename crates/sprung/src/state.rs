@@ -150,6 +150,57 @@ impl Snapshot {
     }
 }
 
+/// Where the points are and how fast they go at one moment, to read from: that of a [`State`], with what rounding
+/// dropped, or that of a [`Snapshot`].
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    high: [&'a [Vec3]; 2],
+    low: Option<[&'a [Vec3]; 2]>,
+}
+
+impl<'a> From<&'a State> for Moment<'a> {
+    fn from(state: &'a State) -> Self {
+        Self {
+            high: [&state.position, &state.velocity],
+            low: Some([&state.position_low, &state.velocity_low]),
+        }
+    }
+}
+
+impl<'a> From<&'a Snapshot> for Moment<'a> {
+    fn from(snapshot: &'a Snapshot) -> Self {
+        Self { high: [&snapshot.positions, &snapshot.velocities], low: None }
+    }
+}
+
+impl Moment<'_> {
+    /// Whether there is an entry for each of so many points.
+    pub(crate) fn has(&self, points: usize) -> bool {
+        self.high.iter().chain(self.low.iter().flatten()).all(|vectors| vectors.len() == points)
+    }
+
+    /// Where a point is, m.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn position(&self, point: usize) -> DVec3 {
+        self.vector(0, point)
+    }
+
+    /// How fast a point goes, m/s.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn velocity(&self, point: usize) -> DVec3 {
+        self.vector(1, point)
+    }
+
+    fn vector(&self, which: usize, point: usize) -> DVec3 {
+        let low = self.low.map_or(DVec3::ZERO, |low| low[which][point].as_dvec3());
+        self.high[which][point].as_dvec3() + low
+    }
+}
+
 /// FNV-1a, 64 bits (Fowler, Noll, Vo): five lines that any language can repeat.
 struct Fnv(u64);
 

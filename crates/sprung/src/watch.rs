@@ -8,8 +8,7 @@ use std::sync::Arc;
 
 use crate::energy::Energy;
 use crate::model::Model;
-use crate::params::DT_RANGE;
-use crate::params::Params;
+use crate::params::{DT_RANGE, Params, SUBSTEPS_RANGE};
 use crate::stability::{self, Setter};
 use crate::state::State;
 use crate::text::{round_down, significant};
@@ -17,6 +16,9 @@ use crate::text::{round_down, significant};
 /// Steps in a row that energy must come from nowhere before a run counts as blown up. Also how often, in steps, a calm run
 /// is looked at: the energy of a large model costs about as much as a step.
 const PATIENCE: u64 = 20;
+
+/// The part of a limit that is suggested as a step.
+const SHARE: f64 = 0.95;
 
 /// Energy from nowhere below this share of the energy at the start is rounding.
 const ROUNDING: f64 = 1e-6;
@@ -52,8 +54,12 @@ pub struct BlowUp {
     pub points: Vec<usize>,
     /// The body or joint that the spring belongs to.
     pub owner: String,
+    /// What sets the limit, by name and by numbers within its body: [`Model::spring_name`], [`Model::point_name`].
+    pub place: String,
     /// The step length in use, s.
     pub dt: f64,
+    /// See [`suggested_damping_scale`](Self::suggested_damping_scale), before rounding.
+    damping_scale: Option<f64>,
     /// The certified limit on dt at the last good state, s.
     pub dt_limit_certified: Option<f64>,
     /// The limit on dt that holds in every configuration, s.
@@ -81,7 +87,13 @@ impl BlowUp {
             spring,
             points,
             owner: spring.map(|spring| model.spring_owner(spring).to_owned()).unwrap_or_default(),
+            place: match certified.as_ref().map(|limit| limit.setter) {
+                Some(Setter::Spring(spring)) => model.spring_name(spring),
+                Some(Setter::Point(point)) => model.point_name(point),
+                None => String::new(),
+            },
             dt: params.dt,
+            damping_scale: stability::damping_scale(model, params, &good.position, params.dt, SHARE),
             dt_limit_certified: certified.map(|limit| limit.dt),
             dt_limit_every_configuration: stability::every_configuration(model, params).map(|limit| limit.dt),
         }
@@ -93,7 +105,25 @@ impl BlowUp {
         let crossed = |limit: &f64| self.dt > *limit;
         let limit =
             self.dt_limit_certified.filter(crossed).or(self.dt_limit_every_configuration.filter(crossed))?;
-        Some(round_down(0.95 * limit))
+        Some(round_down(SHARE * limit))
+    }
+
+    /// As [`suggested_dt`](Self::suggested_dt), but for frames as long as they are: how many steps for each, and how long
+    /// each is, s. `None` where no allowed number of allowed steps is enough.
+    pub fn suggested_substeps(&self, params: &Params) -> Option<(u32, f64)> {
+        let frame = self.dt * f64::from(params.substeps);
+        let substeps = (frame / self.suggested_dt()?).ceil();
+        if substeps > f64::from(*SUBSTEPS_RANGE.end()) {
+            return None;
+        }
+        let dt = frame / substeps;
+        DT_RANGE.contains(&dt).then_some((substeps as u32, dt))
+    }
+
+    /// By how much to multiply the damping of all springs so that dt, unchanged, is 95 % of the limit. `None` where
+    /// damping is not to blame: stiffness or contact alone asks for a shorter step, or dt is short enough as it is.
+    pub fn suggested_damping_scale(&self) -> Option<f64> {
+        self.damping_scale.map(round_down)
     }
 }
 
@@ -136,13 +166,8 @@ impl fmt::Display for BlowUp {
 impl BlowUp {
     fn write_reason(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.points[..], self.spring) {
-            (&[i, j], Some(spring)) => {
-                let owner = &self.owner;
-                write!(f, "The tightest limit is set by spring {spring} of {owner} (points {i} and {j}): ")?;
-            }
-            (&[point], _) => {
-                write!(f, "The tightest limit is set by the contact or grab at point {point}: ")?
-            }
+            (_, Some(_)) => write!(f, "The tightest limit is set by {}: ", self.place)?,
+            (&[_], _) => write!(f, "The tightest limit is set by the contact or grab at {}: ", self.place)?,
             _ => {}
         }
         let dt = significant(self.dt);

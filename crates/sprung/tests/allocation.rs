@@ -3,6 +3,7 @@
 mod common;
 
 use common::scenes;
+use sprung::{Change, Vec3};
 
 #[test]
 fn a_step_allocates_nothing() {
@@ -10,6 +11,8 @@ fn a_step_allocates_nothing() {
         let mut run = scenes::engine(&scene);
         run.keep_history(0);
         let dt = run.params().dt;
+        let last = run.model().point_count() - 1;
+        run.change(Change::Carry(last, Some(Vec3::Y))).expect("allowed");
         run.step(dt).expect("it is stable");
         // A hundred steps: the watch looks at five of them and keeps each as the last good state.
         let taken = allocation_counter::measure(|| {

@@ -354,7 +354,7 @@ chain = { points = 3, step = [1, 0, 0] }
 radius = 1
 stifness = 5
 "#,
-        r#"my.toml:6:1: body[0].springs[0].stifness: is not a known key; allowed here are radius, kinds, pairs, rest_length, stiffness, damping, rest_scale; did you mean "stiffness"?"#,
+        r#"my.toml:6:1: body[0].springs[0].stifness: is not a known key; allowed here are radius, kinds, pairs, rest_length, stiffness, damping, rest_scale, cut, except; did you mean "stiffness"?"#,
     ),
     (
         "UnknownKey",
@@ -362,7 +362,7 @@ stifness = 5
 name = "a"
 chian = { points = 3 }
 "#,
-        r#"my.toml:3:1: body[0].chian: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs; did you mean "chain"?"#,
+        r#"my.toml:3:1: body[0].chian: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces; did you mean "chain"?"#,
     ),
     (
         "UnknownKey",
@@ -1187,6 +1187,239 @@ points = [[0, 0, 0]]
         "dt = 1\ntitle = \"a\0\"",
         "my.toml:2:11: has a byte that is not text here (NUL); is this a TOML file?",
     ),
+    (
+        "Conflict",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = [[1, 0]]
+"#,
+        r#"my.toml:7:8: body[0].springs[0].cut[0]: runs from 1 back to 0; say the smaller number first"#,
+    ),
+    (
+        "Duplicate",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = [1, [0, 2]]
+"#,
+        r#"my.toml:7:11: body[0].springs[0].cut[1]: names spring 1 a second time"#,
+    ),
+    (
+        "NotFound",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = [2]
+"#,
+        r#"my.toml:7:8: body[0].springs[0].cut[0]: names spring 2, and this group has the springs 0 to 1"#,
+    ),
+    (
+        "NotFound",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = [[0, 4294967295]]
+"#,
+        r#"my.toml:7:8: body[0].springs[0].cut[0]: names spring 4294967295, and this group has the springs 0 to 1"#,
+    ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = [-1]
+"#,
+        r#"my.toml:7:8: body[0].springs[0].cut[0]: is -1, and must be a number (from 0), or a list of the first and the last"#,
+    ),
+    (
+        "WrongType",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = [[1]]
+"#,
+        r#"my.toml:7:8: body[0].springs[0].cut[0]: has 1 entry, and must be a list of the first and the last"#,
+    ),
+    (
+        "WrongType",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+cut = ["all"]
+"#,
+        r#"my.toml:7:8: body[0].springs[0].cut[0]: is the text "all", and must be a number (from 0), or a list of the first and the last"#,
+    ),
+    (
+        "MissingField",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+[[body.springs.except]]
+stiffness = 1
+"#,
+        r#"my.toml:7:1: body[0].springs[0].except[0].springs: is missing, and has no default"#,
+    ),
+    (
+        "MissingField",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+[[body.springs.except]]
+springs = [0]
+"#,
+        r#"my.toml:7:1: body[0].springs[0].except[0]: says nothing; say stiffness, damping, rest_scale or rest_length"#,
+    ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+[[body.springs.except]]
+springs = []
+stiffness = 1
+"#,
+        r#"my.toml:8:11: body[0].springs[0].except[0].springs: is an empty list, and must name at least one spring"#,
+    ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+[[body.springs.except]]
+springs = [0]
+damping = -1
+"#,
+        r#"my.toml:9:11: body[0].springs[0].except[0].damping: is -1 N·s/m, and must be from 0 to 1e12 N·s/m"#,
+    ),
+    (
+        "Conflict",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+[[body.springs.except]]
+springs = [0]
+rest_scale = 1
+rest_length = 1
+"#,
+        r#"my.toml:10:15: body[0].springs[0].except[0].rest_length: says both rest_scale and rest_length; one of them is enough"#,
+    ),
+    (
+        "NotFound",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body.springs]]
+radius = 1
+stiffness = 5
+[[body.springs.except]]
+springs = [0, [1, 2]]
+stiffness = 1
+"#,
+        r#"my.toml:8:15: body[0].springs[0].except[0].springs[1]: names spring 2, and this group has the springs 0 to 1"#,
+    ),
+    (
+        "NotFound",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+forces = [{ point = 3, force = [0, 1, 0] }]
+"#,
+        r#"my.toml:4:21: body[0].forces[0].point: names point 3, and "a" has the points 0 to 2"#,
+    ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+forces = [{ point = 0, force = [0, 1e10, 0] }]
+"#,
+        r#"my.toml:4:36: body[0].forces[0].force[1]: is 1e10 N, and must be from -1e9 to 1e9 N"#,
+    ),
+    (
+        "Duplicate",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+forces = [{ point = 0, force = [0, 1, 0] }, { point = 0, force = [1, 1, 0] }]
+"#,
+        r#"my.toml:4:55: body[0].forces[1].point: pushes point 0 a second time"#,
+    ),
+    (
+        "MissingField",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+forces = [{ point = 0 }]
+"#,
+        r#"my.toml:4:11: body[0].forces[0].force: is missing, and has no default"#,
+    ),
+    (
+        "NotFound",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [1, 0, 0] }
+[[body]]
+name = "b"
+points = [[0, 1, 0]]
+[[joint]]
+between = ["a", "b"]
+pairs = [[0, 0]]
+stiffness = 1
+cut = [1]
+"#,
+        r#"my.toml:11:8: joint[0].cut[0]: names spring 1, and this group has the springs 0 to 0"#,
+    ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+chain = { points = 3, step = [10, 0, 0] }
+[[body.springs]]
+radius = 10
+stiffness = 5
+[[body.springs.except]]
+springs = [1]
+rest_scale = 1e9
+"#,
+        r#"my.toml:9:14: body[0].springs[0].except[0].rest_scale: makes a spring 1e10 m long at rest, and it may be at most 1e9 m"#,
+    ),
 ];
 
 /// (code, key, value, message): changes that are refused, to the scene of the jelly.
@@ -1239,7 +1472,7 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "UnknownKey",
         "body.jelly.springs.stifness",
         "5",
-        r#"--set body.jelly.springs.stifness=5: body[0].springs[0].stifness: is not a known key; allowed here are radius, kinds, pairs, rest_length, stiffness, damping, rest_scale; did you mean "stiffness"?"#,
+        r#"--set body.jelly.springs.stifness=5: body[0].springs[0].stifness: is not a known key; allowed here are radius, kinds, pairs, rest_length, stiffness, damping, rest_scale, cut, except; did you mean "stiffness"?"#,
     ),
     (
         "NotFound",
@@ -1291,7 +1524,7 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "UnknownKey",
         "body.jelly.pairs",
         "3",
-        "--set body.jelly.pairs=3: body[0].pairs: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs",
+        "--set body.jelly.pairs=3: body[0].pairs: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces",
     ),
     (
         "OutOfRange",

@@ -5,6 +5,7 @@ mod common;
 use common::{oscillator, scenes, simulation, steps};
 use sprung::{
     Cause, Change, Code, Error, Grab, Material, ModelBuilder, Plane, SettleOptions, Simulation, Vec3,
+    stability,
 };
 
 /// Steps until it blows up.
@@ -66,8 +67,85 @@ fn a_step_over_the_limit_is_caught_and_explained() {
         assert!(text.contains(&part), "\"{part}\" is missing in: {text}");
     }
 
+    // Or as many steps more for each frame: 11 · 0.013 s is as long as 14 steps that are short enough.
+    let (substeps, dt) = report.suggested_substeps(run.params()).expect("more steps mend it");
+    assert_eq!(substeps, (11.0 * 0.013 / fix).ceil() as u32);
+    assert!(dt <= fix && (f64::from(substeps) * dt - 11.0 * 0.013).abs() < 1e-15);
+    // Or less damping: of the demand of 4, the springs alone make 0.013²·8644 = 1.5.
+    let scale = report.suggested_damping_scale().expect("the dampers make the larger part");
+    let mut damped = run.clone();
+    damped.change(Change::Damping(0..7560, 10.0 * scale as f32)).expect("allowed");
+    let limit = stability::certified(damped.model(), damped.params(), &damped.state().position);
+    let limit = limit.expect("springs set it").dt;
+    assert!(0.013 <= 0.9501 * limit && 0.013 > 0.9 * limit, "0.013 s of {limit} s");
+    steps(&mut damped, 200);
+
     run.change(Change::Dt(fix)).expect("allowed");
     steps(&mut run, 200);
+}
+
+/// dt·c = 3 by the dampers alone, over the 2 that are stable, while dt·ω = 1 would be.
+#[test]
+fn too_much_damping_is_told_by_how_much() {
+    let material = Material { stiffness: 100.0, damping: 30.0 };
+    let mut run = simulation(oscillator(1.0, material, 1.0, 1.1, 0.0));
+    let (error, _) = blow_of_dt(&mut run, 0.1);
+    let report = error.blow_up().expect("it says what happened");
+    let scale = report.suggested_damping_scale().expect("less damping mends it");
+    // (dt/0.95)²ω² + 2(dt/0.95)·s·c = 4, and two digits of s.
+    let exact = (4.0 - (0.1f64 / 0.95).powi(2) * 100.0) / (2.0 * 0.1 / 0.95 * 30.0);
+    assert!(scale <= exact && scale > 0.95 * exact, "{scale}, exactly {exact}");
+    run.change(Change::Damping(0..1, 30.0 * scale as f32)).expect("allowed");
+    let limit = stability::certified(run.model(), run.params(), &run.state().position);
+    let limit = limit.expect("a spring sets it").dt;
+    assert!((0.1 / limit - 0.95).abs() < 0.02, "dt is {} of the limit", 0.1 / limit);
+    steps(&mut run, 200);
+}
+
+#[test]
+fn fixes_keep_to_what_is_allowed() {
+    let mut run = simulation(oscillator(1.0, Material { stiffness: 1e12, damping: 0.0 }, 1.0, 1.1, 0.0));
+    run.change(Change::Substeps(1_000_000)).expect("allowed");
+    let (error, _) = blow_of_dt(&mut run, 1.0);
+    let report = error.blow_up().expect("it says what happened");
+    assert!(report.suggested_dt().is_some());
+    assert_eq!(report.suggested_substeps(run.params()), None, "over a million steps for each frame");
+    assert_eq!(report.suggested_damping_scale(), None, "there is none");
+}
+
+/// Two bodies and a joint: what is to blame is named by its number within its body, as the scene file counts.
+#[test]
+fn springs_and_points_are_named_within_their_body() {
+    let mut builder = ModelBuilder::new();
+    let soft = Material { stiffness: 1.0, damping: 0.0 };
+    for (body, height) in [("upper", 5.0), ("lower", 0.0)] {
+        builder.begin_body(body).expect("a new name");
+        for x in 0..3 {
+            builder.add_point(Vec3::new(x as f32, height, 0.0), 1.0).expect("allowed");
+        }
+        let first = builder.point_count() - 3;
+        builder.add_spring(first, first + 1, soft).expect("allowed");
+        builder.add_spring(first + 1, first + 2, Material { stiffness: 1e6, damping: 0.0 }).expect("allowed");
+    }
+    builder.begin_joint("upper - lower");
+    builder.add_spring(2, 3, soft).expect("allowed");
+    let (model, mut params, state) = builder.build().expect("there are points");
+    assert_eq!(model.point_name(0), "point 0 of upper");
+    assert_eq!(model.point_name(5), "point 2 of lower");
+    assert_eq!(model.spring_name(1), "spring 1 of upper (points 1 and 2)");
+    assert_eq!(model.spring_name(3), "spring 1 of lower (points 1 and 2)");
+    assert_eq!(model.spring_name(4), "spring 0 of upper - lower (point 2 of upper and point 0 of lower)");
+    assert_eq!((model.point_name(9), model.spring_name(9)), ("point 9".to_owned(), "spring 9".to_owned()));
+
+    params.apply(&model, &Change::Stiffness(1..2, 1.0)).expect("allowed");
+    params.apply(&model, &Change::RestScale(0..5, 0.9)).expect("allowed");
+    params.dt = 0.01;
+    let mut run = simulation((model, params, state));
+    let (error, _) = blow(&mut run, 1000);
+    let report = error.blow_up().expect("it says what happened");
+    assert_eq!((report.spring, &report.points[..]), (Some(3), &[4, 5][..]), "as data, over the whole scene");
+    assert_eq!(report.place, "spring 1 of lower (points 1 and 2)");
+    assert!(error.to_string().contains("set by spring 1 of lower (points 1 and 2): "), "{error}");
 }
 
 /// At 0.0121 the jelly reaches some 361 m/s and never goes non-finite: only its energy tells.

@@ -2,8 +2,11 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::{scenes, steps};
-use sprung::{Change, ContactLaw, Event, Grab, Plane, SettleOptions, Simulation, Vec3};
+use proptest::prelude::*;
+use sprung::{Change, ContactLaw, Event, Grab, Params, Plane, SettleOptions, Simulation, Vec3};
 
 /// One of every kind of change, for a scene with at least 15 points and 14 springs.
 fn every_change() -> Vec<Change> {
@@ -27,7 +30,24 @@ fn every_change() -> Vec<Change> {
         Change::Mass(0..1, 2.0),
         Change::Force(4, Vec3::ZERO),
         Change::Dt(0.01),
+        Change::Carry(6, Some(Vec3::new(1.0, 2.0, -3.0))),
+        Change::Place(3, Vec3::new(7.0, 22.0, 1.0)),
+        Change::Carry(6, None),
+        Change::Carry(0, Some(Vec3::new(0.0, 1.0, 0.0))),
+        Change::Params(all_at_once()),
     ]
+}
+
+/// The chain's own parameters but for some of every kind.
+fn all_at_once() -> Arc<Params> {
+    let mut params = scenes::engine(&scenes::chain()).params().clone();
+    params.dt = 0.008;
+    params.gravity = Vec3::new(0.0, -8.0, 2.0);
+    Arc::make_mut(&mut params.point_mass)[7] = 2.5;
+    Arc::make_mut(&mut params.point_pinned)[13] = true;
+    Arc::make_mut(&mut params.spring_stiffness)[4] = 120.0;
+    params.external_forces.insert(9, Vec3::X);
+    Arc::new(params)
 }
 
 /// A chain to which everything is done; the hashes on arriving at each step and after what was done there.
@@ -57,7 +77,11 @@ fn eventful(bytes: usize) -> (Simulation, Vec<u64>) {
 /// Where a step has events, rewinding shows the state after them; the hashes were taken on arrival.
 fn hash_after_events(run: &Simulation, arrived: &[u64], step: usize) -> Option<u64> {
     let touched = run.log().iter().any(|(at, event)| {
-        let moves = matches!(event, Event::Settle(_) | Event::Change(Change::Pin(..) | Change::Mass(..)));
+        use Change::{Carry, Mass, Params, Pin, Place};
+        let moves = matches!(
+            event,
+            Event::Settle(_) | Event::Change(Pin(..) | Mass(..) | Params(_) | Carry(..) | Place(..))
+        );
         *at == step as u64 && moves
     });
     (!touched).then(|| arrived[step])
@@ -105,10 +129,154 @@ fn every_kind_of_change_is_in_the_list() {
         Change::Force(..) => 10,
         Change::Grab(_) => 11,
         Change::Release(_) => 12,
+        Change::Params(_) => 13,
+        Change::Carry(..) => 14,
+        Change::Place(..) => 15,
     };
-    let mut seen = [false; 13];
+    let mut seen = [false; 16];
     every_change().iter().for_each(|change| seen[kind(change)] = true);
-    assert_eq!(seen, [true; 13]);
+    assert_eq!(seen, [true; 16]);
+}
+
+#[test]
+fn all_parameters_at_once_are_as_one_by_one() {
+    let changes = || every_change().into_iter().filter(|change| !matches!(change, Change::Params(_)));
+    let mut one_by_one = scenes::engine(&scenes::chain());
+    let own = Arc::new(one_by_one.params().clone());
+    steps(&mut one_by_one, 30);
+    let mut at_once = one_by_one.clone();
+    let before = at_once.energy().total();
+    changes().try_for_each(|change| one_by_one.change(change)).expect("allowed");
+    at_once.change(Change::Params(Arc::new(one_by_one.params().clone()))).expect("allowed");
+    assert_eq!(at_once.params(), one_by_one.params());
+    // What it adds to the energy is work put in.
+    let jump = at_once.energy().total() - before;
+    assert!((jump - at_once.state().ledger.work_in).abs() <= 1e-12 * before.abs());
+    // Undone, nothing is left of it but that it was done: the points that no pin had stopped go on as before.
+    let mut untouched = scenes::engine(&scenes::chain());
+    steps(&mut untouched, 30);
+    at_once.change(Change::Params(own.clone())).expect("allowed");
+    assert_eq!((at_once.params(), at_once.state_hash()), (&*own, untouched.state_hash()));
+    assert_eq!(at_once.log().len(), 2);
+}
+
+#[test]
+fn parameters_that_do_not_fit_are_refused_whole() {
+    let mut run = scenes::engine(&scenes::chain());
+    let before = run.params().clone();
+    let refused = |edit: &dyn Fn(&mut Params)| {
+        let mut params = before.clone();
+        edit(&mut params);
+        Change::Params(Arc::new(params))
+    };
+    for change in [
+        refused(&|params| params.dt = f64::NAN),
+        refused(&|params| Arc::make_mut(&mut params.point_mass)[3] = -1.0),
+        refused(&|params| params.spring_cut = Arc::new(vec![true])),
+        refused(&|params| params.external_forces = [(15, Vec3::X)].into()),
+    ] {
+        assert!(run.change(change).is_err());
+        assert_eq!(run.params(), &before);
+    }
+    assert!(run.log().is_empty());
+}
+
+#[test]
+fn checkpoints_are_dense_in_the_recent_past_and_reach_back_to_the_first_step() {
+    let mut run = scenes::engine(&scenes::chain());
+    let room = 20;
+    run.keep_history(room * 15 * 48);
+    let newest = 30_000;
+    steps(&mut run, newest);
+    assert_eq!(run.recorded_steps(), 0..=newest);
+    // What a replay costs, in steps: at most a share of how long ago it was, and next to nothing for the last second.
+    let cost = |ago: u64| newest - ago - run.checkpoint_before(newest - ago);
+    assert!((0..500).all(|ago| cost(ago) < 200), "{:?}", (0..500).map(cost).max());
+    for ago in [1000, 3000, 10_000, 20_000, 29_000] {
+        assert!(cost(ago) <= ago / 2 + 128, "{ago} steps ago costs {} steps", cost(ago));
+    }
+    // The bound holds, but for the first state, which is kept in any case.
+    assert!(run.history_bytes() <= (room + 1) * 15 * 48, "{} bytes", run.history_bytes());
+    assert!(run.history_bytes() >= room / 2 * 15 * 48, "{} bytes", run.history_bytes());
+    let end = run.state().clone();
+    for step in [0, 29_990, 12_345] {
+        run.rewind_to(step).expect("it is recorded");
+    }
+    run.rewind_to(newest).expect("it is recorded");
+    assert_eq!(run.state(), &end);
+}
+
+#[test]
+fn a_replay_in_small_portions_ends_at_the_same_bits() {
+    let (mut run, arrived) = eventful(8 << 10);
+    let newest = *run.recorded_steps().end();
+    for target in [newest, 3, 100, newest - 1] {
+        let checkpoint = run.checkpoint_before(target);
+        assert!(checkpoint <= target);
+        run.rewind_to(checkpoint).expect("it is recorded");
+        while run.state().step < target {
+            run.rewind_to(target.min(run.state().step + 5)).expect("it is recorded");
+        }
+        if let Some(expected) = hash_after_events(&run, &arrived, target as usize) {
+            assert_eq!(run.state_hash(), expected);
+        }
+    }
+    assert_eq!(run.recorded_steps(), 0..=newest, "looking around drops nothing");
+}
+
+#[test]
+fn a_clone_is_the_ghost_of_the_earlier_run() {
+    let (mut run, arrived) = eventful(64 << 20);
+    let newest = *run.recorded_steps().end();
+    run.rewind_to(120).expect("it is recorded");
+    let mut ghost = run.clone();
+    run.change(Change::Gravity(Vec3::X)).expect("allowed");
+    steps(&mut run, 10);
+    assert_eq!(run.recorded_steps(), 0..=130);
+    assert_eq!(ghost.recorded_steps(), 0..=newest);
+    ghost.rewind_to(newest).expect("it is recorded");
+    assert_eq!(ghost.state_hash(), arrived[newest as usize]);
+}
+
+#[test]
+fn parameters_in_the_log_count_as_memory() {
+    let mut run = scenes::engine(&scenes::cloth());
+    let before = run.history_bytes();
+    let mut params = run.params().clone();
+    Arc::make_mut(&mut params.spring_stiffness)[0] = 1.0;
+    run.change(Change::Params(Arc::new(params))).expect("allowed");
+    assert!(run.history_bytes() - before >= 4 * run.model().spring_count());
+}
+
+proptest! {
+    #![proptest_config(common::cases(40))]
+
+    /// Steps, changes and seeks in any order: at every turn, the state is that of a fresh run of what the log says.
+    #[test]
+    fn seeking_and_changing_at_random_never_loses_a_bit(
+        acts in prop::collection::vec((0usize..18, 0u64..90, any::<prop::sample::Index>()), 1..12),
+        room in 0usize..12,
+    ) {
+        let mut run = scenes::engine(&scenes::chain());
+        run.keep_history(room * 15 * 48);
+        for (what, count, place) in acts {
+            match every_change().get(what) {
+                Some(change) if count % 2 == 0 => run.change(change.clone()).expect("allowed"),
+                _ => {
+                    let step = place.index(*run.recorded_steps().end() as usize + 1);
+                    run.rewind_to(step as u64).expect("it is recorded");
+                }
+            }
+            for _ in 0..count {
+                let _blown_up = run.step(run.params().dt);
+            }
+        }
+        let newest = *run.recorded_steps().end();
+        run.rewind_to(newest).expect("it is recorded");
+        let (state, params) = (run.state().clone(), run.params().clone());
+        let again = fresh_run_of(run.log(), newest);
+        prop_assert_eq!((again.state(), again.params()), (&state, &params));
+    }
 }
 
 #[test]
@@ -137,8 +305,14 @@ fn going_on_from_the_past_drops_the_future() {
 #[test]
 fn the_log_repeats_a_run_on_a_fresh_simulation() {
     let (run, _) = eventful(64 << 20);
+    let again = fresh_run_of(run.log(), run.state().step);
+    assert_eq!(again.state(), run.state());
+}
+
+/// The chain, with all done to it that a log says, up to a step.
+fn fresh_run_of(log: &[(u64, Event)], newest: u64) -> Simulation {
     let mut again = scenes::engine(&scenes::chain());
-    let mut log = run.log().iter().peekable();
+    let mut log = log.iter().peekable();
     loop {
         while let Some((_, event)) = log.next_if(|(at, _)| *at == again.state().step) {
             match event {
@@ -146,12 +320,11 @@ fn the_log_repeats_a_run_on_a_fresh_simulation() {
                 Event::Settle(options) => drop(again.settle(*options).expect("it settled before")),
             }
         }
-        if again.state().step == run.state().step {
-            break;
+        if again.state().step == newest {
+            return again;
         }
         steps(&mut again, 1);
     }
-    assert_eq!(again.state(), run.state());
 }
 
 #[test]

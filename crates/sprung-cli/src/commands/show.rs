@@ -147,11 +147,8 @@ fn share(dt: f64, limit: f64) -> String {
 /// A spring or point and the body it belongs to, in words.
 pub fn describe(simulation: &Simulation, setter: Setter) -> String {
     match setter {
-        Setter::Spring(spring) => {
-            let [i, j] = simulation.model().springs()[spring];
-            format!("spring {spring} of {} (points {i} and {j})", simulation.model().spring_owner(spring))
-        }
-        Setter::Point(point) => format!("the contact or grab at point {point}"),
+        Setter::Spring(spring) => simulation.model().spring_name(spring),
+        Setter::Point(point) => format!("the contact or grab at {}", simulation.model().point_name(point)),
     }
 }
 

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::connect::{pairs_between, pairs_within};
 use crate::error::{Code, Error, Result};
-use crate::math::distance;
+use crate::math::{distance, without_negligible};
 use crate::model::{Body, Joint, Model, Surface, SurfaceKind};
 use crate::params::{
     DAMPING_RANGE, DT_RANGE, LENGTH_RANGE, Params, STIFFNESS_RANGE, check_in, check_mass, check_vector,
@@ -18,9 +18,6 @@ use crate::state::State;
 
 /// Springs that a model may have unless [`ModelBuilder::allow_springs`] says otherwise.
 pub const DEFAULT_MAX_SPRINGS: usize = 20_000_000;
-
-/// Coordinates smaller than this are taken as zero, m: no denormal number ever enters a step.
-const NEGLIGIBLE: f32 = 1e-30;
 
 /// What a spring is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -317,6 +314,7 @@ impl ModelBuilder {
             bodies: self.bodies,
             joints: self.joints,
             surfaces: self.surfaces,
+            springs_at: Default::default(),
         };
         let params = Params {
             dt: 0.01,
@@ -331,6 +329,7 @@ impl ModelBuilder {
             spring_cut: Arc::new(vec![false; model.springs.len()]),
             external_forces: Default::default(),
             grabs: Vec::new(),
+            carried: Default::default(),
         };
         Ok((model, params, State::new(self.position, self.velocity)))
     }
@@ -388,8 +387,4 @@ impl ModelBuilder {
 fn check_material(material: Material) -> Result<()> {
     check_in("stiffness", material.stiffness, &STIFFNESS_RANGE)?;
     check_in("damping", material.damping, &DAMPING_RANGE)
-}
-
-fn without_negligible(position: Vec3) -> Vec3 {
-    Vec3::from_array(position.to_array().map(|value| if value.abs() < NEGLIGIBLE { 0.0 } else { value }))
 }

@@ -2,4 +2,5 @@
 
 mod plane;
 
+pub(crate) use plane::UNIT_TOLERANCE;
 pub use plane::{ContactLaw, Plane};

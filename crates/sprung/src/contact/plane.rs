@@ -8,6 +8,9 @@ use crate::error::{Code, Error, Result};
 use crate::math::dot;
 use crate::params::{DAMPING_RANGE, STIFFNESS_RANGE, check_in, check_vector};
 
+/// How far the length of a normal may be from 1.
+pub(crate) const UNIT_TOLERANCE: f32 = 1e-5;
+
 /// How a touched plane answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -51,7 +54,7 @@ impl Plane {
         check_in("stiffness", self.stiffness, &STIFFNESS_RANGE)?;
         check_in("damping", self.damping, &DAMPING_RANGE)?;
         let length = self.normal.length();
-        if (length - 1.0).abs() > 1e-5 {
+        if (length - 1.0).abs() > UNIT_TOLERANCE {
             let sentence = format!("has length {length}, and must have length 1");
             return Err(Error::new(Code::OutOfRange, sentence).at_field("normal"));
         }

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
+use crate::state::{Moment, State};
 
 pub(crate) const FORCE: Force = Force {
     name: "contact",
@@ -15,6 +15,7 @@ pub(crate) const FORCE: Force = Force {
     account: Account::Contact,
     potential,
     parts,
+    at,
 };
 
 pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
@@ -25,11 +26,29 @@ pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
     }
 }
 
+/// Σ ½k_c·p² of one point over the planes, J; zero if no force can move it.
+pub(crate) fn stored(params: &Params, point: usize, position: DVec3) -> f64 {
+    if params.is_fixed(point) {
+        return 0.0;
+    }
+    params.planes.iter().map(|plane| plane.potential(position)).sum()
+}
+
 /// Σ ½k_c·p² over the touching points that can move, J.
 fn potential(_: &Model, params: &Params, state: &State) -> f64 {
-    let free = |&point: &usize| !params.is_fixed(point);
-    let of_plane = |plane: &crate::contact::Plane| -> f64 {
-        (0..state.position.len()).filter(free).map(|point| plane.potential(state.position64(point))).sum()
+    if params.planes.is_empty() {
+        return 0.0;
+    }
+    (0..state.position.len()).map(|point| stored(params, point, state.position64(point))).sum()
+}
+
+fn at(_: &Model, params: &Params, moment: Moment<'_>, point: usize) -> DVec3 {
+    if params.is_fixed(point) {
+        return DVec3::ZERO;
+    }
+    let of_plane = |plane: &crate::contact::Plane| {
+        let (spring, other) = plane.force_parts(moment.position(point), moment.velocity(point));
+        spring + other
     };
     params.planes.iter().map(of_plane).sum()
 }

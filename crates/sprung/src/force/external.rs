@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
+use crate::state::{Moment, State};
 
 pub(crate) const FORCE: Force = Force {
     name: "external",
@@ -15,12 +15,17 @@ pub(crate) const FORCE: Force = Force {
     account: Account::WorkIn,
     potential: |_, _, _| 0.0,
     parts,
+    at,
 };
 
 pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
     for (&point, &force) in &params.external_forces {
         forces[point] += force;
     }
+}
+
+fn at(_: &Model, params: &Params, _: Moment<'_>, point: usize) -> DVec3 {
+    params.external_forces.get(&point).map_or(DVec3::ZERO, |force| force.as_dvec3())
 }
 
 /// The pushed points and the forces on them, in float64.

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::{Account, Force, Store};
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
+use crate::state::{Moment, State};
 
 pub(crate) const FORCE: Force = Force {
     name: "gravity",
@@ -15,6 +15,7 @@ pub(crate) const FORCE: Force = Force {
     account: Account::None,
     potential,
     parts,
+    at,
 };
 
 pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
@@ -23,11 +24,20 @@ pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
     }
 }
 
+/// −m g·x of one point, J; zero if no force can move it.
+pub(crate) fn stored(params: &Params, point: usize, position: DVec3) -> f64 {
+    let mass = if params.is_fixed(point) { 0.0 } else { f64::from(params.point_mass[point]) };
+    -mass * params.gravity.as_dvec3().dot(position)
+}
+
 /// −Σ m g·x over the points that can move, J.
 fn potential(_: &Model, params: &Params, state: &State) -> f64 {
-    let gravity = params.gravity.as_dvec3();
-    let free = (0..state.position.len()).filter(|&point| !params.is_fixed(point));
-    -free.map(|point| f64::from(params.point_mass[point]) * gravity.dot(state.position64(point))).sum::<f64>()
+    (0..state.position.len()).map(|point| stored(params, point, state.position64(point))).sum()
+}
+
+fn at(_: &Model, params: &Params, _: Moment<'_>, point: usize) -> DVec3 {
+    let mass = if params.is_fixed(point) { 0.0 } else { f64::from(params.point_mass[point]) };
+    params.gravity.as_dvec3() * mass
 }
 
 fn parts(_: &Model, params: &Params, _: &State, conservative: &mut [DVec3], _: &mut [DVec3]) {

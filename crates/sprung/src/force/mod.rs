@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
+use crate::state::{Moment, State};
 
 /// Where the ledger books the energy that a force stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +57,8 @@ pub struct Force {
     pub potential: fn(&Model, &Params, &State) -> f64,
     /// Adds its conservative part, −∇potential, and all the rest of it, to one entry per point each, N.
     pub parts: fn(&Model, &Params, &State, conservative: &mut [DVec3], rest: &mut [DVec3]),
+    /// Both parts together on one point, N, without looking at the others but its neighbours.
+    pub at: fn(&Model, &Params, Moment<'_>, point: usize) -> DVec3,
 }
 
 /// Every force of the engine.

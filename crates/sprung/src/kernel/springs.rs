@@ -11,7 +11,7 @@
 //! Either way springs go through in lanes: a few dozen axes are fetched, their forces computed by plain loops over
 //! arrays, of which the compiler makes vector code, and handed out again in order.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use glam::Vec3;
 
@@ -28,7 +28,7 @@ const LANES: usize = 64;
 
 /// What the forces of many springs depend on besides their ends; followed by lanes of zeros, so that any spring
 /// begins a whole set of lanes.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Laws {
     stiffness: Vec<f32>,
     damping: Vec<f32>,
@@ -118,22 +118,32 @@ fn lanes_from(values: &[f32], first: usize) -> &[f32; LANES] {
 /// The live springs of a model under its parameters, packed in the order of their use.
 #[derive(Clone, Debug)]
 pub(crate) struct SpringKernel {
-    ends: Vec<[u32; 2]>,
-    laws: Laws,
+    /// Shared by clones, as it never changes.
+    packed: Arc<Packed>,
     /// The same springs sorted by point, made when several threads first ask for it.
     gather: Option<Gather>,
+}
+
+#[derive(Debug)]
+struct Packed {
+    ends: Vec<[u32; 2]>,
+    laws: Laws,
 }
 
 impl SpringKernel {
     /// Packs the springs that can move anything.
     pub fn new(model: &Model, params: &Params) -> Self {
-        let live: Vec<usize> =
-            (0..model.spring_count()).filter(|&spring| params.is_live(model, spring)).collect();
+        // A point that is carried may be let go: its springs are packed with all others.
+        let can_move = |&point: &u32| !params.is_anchored(point as usize);
+        let live: Vec<usize> = (0..model.spring_count())
+            .filter(|&spring| !params.spring_cut[spring] && model.springs[spring].iter().any(can_move))
+            .collect();
         let mut laws = Laws::with_len(live.len());
         for (at, &spring) in live.iter().enumerate() {
             laws.set(at, params, spring);
         }
-        Self { ends: live.iter().map(|&spring| model.springs[spring]).collect(), laws, gather: None }
+        let ends = live.iter().map(|&spring| model.springs[spring]).collect();
+        Self { packed: Arc::new(Packed { ends, laws }), gather: None }
     }
 
     /// Adds every spring's force to `forces`, which hold zeros.
@@ -147,17 +157,19 @@ impl SpringKernel {
         if workers.count() == 1 {
             self.scatter(position, velocity, forces);
         } else {
-            let Self { ends, laws, gather } = self;
+            let Self { packed, gather } = self;
+            let Packed { ends, laws } = &**packed;
             let gather = gather.get_or_insert_with(|| Gather::new(ends, laws, position.len()));
             gather.accumulate(position, velocity, forces, workers);
         }
     }
 
     fn scatter(&self, position: &[Vec3], velocity: &[Vec3], forces: &mut [Vec3]) {
+        let Packed { ends, laws } = &*self.packed;
         let mut lanes = Lanes::new();
-        for (chunk, ends) in self.ends.chunks(LANES).enumerate() {
+        for (chunk, ends) in ends.chunks(LANES).enumerate() {
             lanes.fetch(ends, position, velocity);
-            lanes.compute(&self.laws, chunk * LANES);
+            lanes.compute(laws, chunk * LANES);
             for (lane, &[i, j]) in ends.iter().enumerate() {
                 let force = lanes.force(lane);
                 forces[i as usize] += force;
@@ -171,10 +183,9 @@ impl SpringKernel {
 #[derive(Debug)]
 struct Gather {
     /// Where each point's half-springs begin, and the total at the end.
-    starts: Vec<usize>,
-    /// The point itself and the point at the other end.
-    ends: Vec<[u32; 2]>,
-    laws: Laws,
+    starts: Arc<Vec<usize>>,
+    /// The springs, each by the point itself and the point at the other end.
+    packed: Arc<Packed>,
     /// One block's forces each; a lock that is never waited for, as each block has one thread.
     blocks: Vec<Mutex<Vec<Vec3>>>,
 }
@@ -182,7 +193,7 @@ struct Gather {
 impl Clone for Gather {
     fn clone(&self) -> Self {
         let blocks = Self::blocks(self.starts.len() - 1);
-        Self { starts: self.starts.clone(), ends: self.ends.clone(), laws: self.laws.clone(), blocks }
+        Self { starts: self.starts.clone(), packed: self.packed.clone(), blocks }
     }
 }
 
@@ -208,7 +219,8 @@ impl Gather {
                 half_laws.rest_length[at] = laws.rest_length[spring];
             }
         }
-        Self { starts, ends: halves, laws: half_laws, blocks: Self::blocks(points) }
+        let packed = Arc::new(Packed { ends: halves, laws: half_laws });
+        Self { starts: Arc::new(starts), packed, blocks: Self::blocks(points) }
     }
 
     fn blocks(points: usize) -> Vec<Mutex<Vec<Vec3>>> {
@@ -241,9 +253,9 @@ impl Gather {
         let halves = self.starts[first]..self.starts[first + sums.len()];
         for begin in halves.clone().step_by(LANES) {
             let end = halves.end.min(begin + LANES);
-            let ends = &self.ends[begin..end];
+            let ends = &self.packed.ends[begin..end];
             lanes.fetch(ends, position, velocity);
-            lanes.compute(&self.laws, begin);
+            lanes.compute(&self.packed.laws, begin);
             for (lane, &[i, _]) in ends.iter().enumerate() {
                 sums[i as usize - first] += lanes.force(lane);
             }

@@ -1,19 +1,20 @@
 //! From a scene to model, params and first state.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec3};
 
 use super::check::{MAX_POINTS, check};
-use super::choices::{Dt, OneOrEach, Pin};
-use super::types::{Body, Joint, Plane, Scene, Springs};
+use super::choices::{Dt, Numbers, OneOrEach, Pin};
+use super::group::Group;
+use super::types::{Body, Exception, Joint, Plane, Scene, Springs};
 use crate::build::{Material, ModelBuilder};
 use crate::contact;
+use crate::contact::UNIT_TOLERANCE;
 use crate::error::{Code, Error, Result};
 use crate::math::rotation;
 use crate::model::Model;
-use crate::params::{LENGTH_RANGE, MAGNITUDE_RANGE, Params};
+use crate::params::{MAGNITUDE_RANGE, Params};
 use crate::simulation::Simulation;
 use crate::stability;
 use crate::state::State;
@@ -36,6 +37,14 @@ impl Scene {
     pub fn build_within(&self, max_points: u64, max_springs: u64) -> Result<(Model, Params, State)> {
         check(self, max_points.min(MAX_POINTS))
             .and_then(|()| Assembly::new(self, max_springs.min(self.spring_limit())).build())
+            .map(|built| (built.model, built.params, built.state))
+            .map_err(|error| self.origin.locate(error))
+    }
+
+    /// As [`build`](Self::build), and knows which springs each group made.
+    pub(super) fn build_in_groups(&self) -> Result<Built> {
+        check(self, MAX_POINTS)
+            .and_then(|()| Assembly::new(self, self.spring_limit()).build())
             .map_err(|error| self.origin.locate(error))
     }
 
@@ -49,6 +58,15 @@ impl Scene {
     }
 }
 
+/// What a scene was built into.
+pub(super) struct Built {
+    pub model: Model,
+    pub params: Params,
+    pub state: State,
+    /// The springs of each group of each body, and then of each joint, in the order of the file.
+    pub groups: Vec<Range<usize>>,
+}
+
 /// A scene being built.
 struct Assembly<'a> {
     scene: &'a Scene,
@@ -56,31 +74,25 @@ struct Assembly<'a> {
     builder: ModelBuilder,
     /// The points of each body, as it is finished.
     bodies: Vec<Range<usize>>,
-    /// Springs whose rest length is a multiple of the one they are built with.
-    rest_scales: Vec<RestScale>,
-}
-
-struct RestScale {
-    springs: Range<usize>,
-    scale: f32,
-    path: String,
+    groups: Vec<Group<'a>>,
 }
 
 impl<'a> Assembly<'a> {
     fn new(scene: &'a Scene, max_springs: u64) -> Self {
         let mut builder = ModelBuilder::new();
         builder.allow_springs(usize::try_from(max_springs).unwrap_or(usize::MAX));
-        Self { scene, max_springs, builder, bodies: Vec::new(), rest_scales: Vec::new() }
+        Self { scene, max_springs, builder, bodies: Vec::new(), groups: Vec::new() }
     }
 
-    fn build(mut self) -> Result<(Model, Params, State)> {
+    fn build(mut self) -> Result<Built> {
         self.refuse_too_many_springs()?;
         let points = usize::try_from(self.scene.point_count()).unwrap_or(usize::MAX);
         self.builder.reserve(points, 0);
-        for (index, body) in self.scene.bodies.iter().enumerate() {
+        let scene = self.scene;
+        for (index, body) in scene.bodies.iter().enumerate() {
             self.add_body(&format!("body[{index}]"), body)?;
         }
-        for (index, joint) in self.scene.joints.iter().enumerate() {
+        for (index, joint) in scene.joints.iter().enumerate() {
             self.add_joint(&format!("joint[{index}]"), joint)?;
         }
 
@@ -88,23 +100,19 @@ impl<'a> Assembly<'a> {
         params.substeps = self.scene.substeps;
         params.gravity = vec3(self.scene.gravity);
         params.planes = self.scene.planes.iter().map(plane).collect();
-        let rest_length = Arc::make_mut(&mut params.spring_rest_length);
-        for RestScale { springs, scale, path } in self.rest_scales {
-            for length in &mut rest_length[springs] {
-                *length *= scale;
-                if !LENGTH_RANGE.contains(length) {
-                    let sentence =
-                        format!("makes a spring {length:e} m long at rest, and it may be at most 1e9 m");
-                    return Err(Error::new(Code::OutOfRange, sentence).at_field(format!("{path}.rest_scale")));
-                }
-            }
+        for (body, points) in self.scene.bodies.iter().zip(&self.bodies) {
+            let pushed =
+                body.forces.iter().map(|push| (points.start + push.point as usize, vec3(push.force)));
+            params.external_forces.extend(pushed.filter(|(_, force)| *force != Vec3::ZERO));
         }
+        self.groups.iter().try_for_each(|group| group.apply(&model, &mut params))?;
         params.dt = match self.scene.dt {
             Dt::Seconds(dt) => dt,
             Dt::Auto => stability::auto_dt(&model, &params).map_err(|error| error.at_field("dt"))?,
         };
         params.validate(&model)?;
-        Ok((model, params, state))
+        let groups = self.groups.into_iter().map(|group| group.springs).collect();
+        Ok(Built { model, params, state, groups })
     }
 
     /// Counts the springs of lattices before any memory is asked for.
@@ -125,7 +133,7 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn add_body(&mut self, path: &str, body: &Body) -> Result<()> {
+    fn add_body(&mut self, path: &str, body: &'a Body) -> Result<()> {
         let at = |error: Error| replaced(error, path);
         self.builder.begin_body(&body.name).map_err(at)?;
         let first = self.builder.point_count();
@@ -164,22 +172,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn pin(&mut self, path: &str, body: &Body, points: &Range<usize>, pin: &Pin) -> Result<()> {
-        let chosen: Vec<usize> = match pin {
-            Pin::Index(index) => vec![points.start + *index as usize],
-            Pin::Side(name) => {
-                let shape = body.shape();
-                let side = shape.as_ref().and_then(|lattice| Some(lattice.side_points(lattice.side(name)?)));
-                side.into_iter().flatten().map(|index| points.start + index as usize).collect()
-            }
-            Pin::Box(pin) => {
-                let (min, max) = (vec3(pin.region.min), vec3(pin.region.max));
-                let inside = |point: &usize| {
-                    let position = self.builder.position(*point);
-                    position.cmpge(min).all() && position.cmple(max).all()
-                };
-                points.clone().filter(inside).collect()
-            }
-        };
+        let chosen = pinned_by(pin, body, points, |point| self.builder.position(point));
         if chosen.is_empty() {
             let sentence = format!("contains no point of \"{}\"", body.name);
             let error =
@@ -197,7 +190,7 @@ impl<'a> Assembly<'a> {
         path: &str,
         body: &Body,
         points: &Range<usize>,
-        springs: &Springs,
+        springs: &'a Springs,
     ) -> Result<()> {
         let material = material(springs.stiffness, springs.damping);
         let first = self.builder.spring_count();
@@ -223,11 +216,11 @@ impl<'a> Assembly<'a> {
         if let Some(pairs) = &springs.pairs {
             self.add_pairs(path, pairs, [points.start, points.start], springs.rest_length, material)?;
         }
-        self.scale_rest_lengths(first, springs.rest_scale, path);
+        self.end_group(first, springs.rest_scale, &springs.cut, &springs.except, path);
         Ok(())
     }
 
-    fn add_joint(&mut self, path: &str, joint: &Joint) -> Result<()> {
+    fn add_joint(&mut self, path: &str, joint: &'a Joint) -> Result<()> {
         let body = |name: &String| self.scene.bodies.iter().position(|body| body.name == *name);
         let (Some(a), Some(b)) = (body(&joint.between[0]), body(&joint.between[1])) else {
             return Err(Error::new(Code::NotFound, "joins a body that is not there").at_field(path));
@@ -247,7 +240,7 @@ impl<'a> Assembly<'a> {
         if let Some(pairs) = &joint.pairs {
             self.add_pairs(path, pairs, [a.start, b.start], joint.rest_length, material)?;
         }
-        self.scale_rest_lengths(first, joint.rest_scale, path);
+        self.end_group(first, joint.rest_scale, &joint.cut, &joint.except, path);
         Ok(())
     }
 
@@ -272,16 +265,47 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Notes the scale of all springs made since `first`.
-    fn scale_rest_lengths(&mut self, first: usize, scale: f64, path: &str) {
+    /// Notes what is to be done with all springs made since `first`.
+    fn end_group(
+        &mut self,
+        first: usize,
+        rest_scale: f64,
+        cut: &'a [Numbers],
+        except: &'a [Exception],
+        path: &str,
+    ) {
         let springs = first..self.builder.spring_count();
-        self.rest_scales.push(RestScale { springs, scale: scale as f32, path: path.to_owned() });
+        let rest_scale = rest_scale as f32;
+        self.groups.push(Group { springs, rest_scale, cut, except, path: path.to_owned() });
     }
 
     fn explained(&self, error: Error, field: String) -> Error {
         match error.code() {
             Code::TooLarge => too_many_springs(self.max_springs, field),
             _ => replaced(error, &field),
+        }
+    }
+}
+
+/// The points that a pin holds; `position` tells where each point starts.
+pub(super) fn pinned_by(
+    pin: &Pin,
+    body: &Body,
+    points: &Range<usize>,
+    position: impl Fn(usize) -> Vec3,
+) -> Vec<usize> {
+    match pin {
+        Pin::Index(index) => vec![points.start + *index as usize],
+        Pin::Side(name) => {
+            let shape = body.shape();
+            let side = shape.as_ref().and_then(|lattice| Some(lattice.side_points(lattice.side(name)?)));
+            side.into_iter().flatten().map(|index| points.start + index as usize).collect()
+        }
+        Pin::Box(pin) => {
+            let (min, max) = (vec3(pin.region.min), vec3(pin.region.max));
+            let inside =
+                |&point: &usize| position(point).cmpge(min).all() && position(point).cmple(max).all();
+            points.clone().filter(inside).collect()
         }
     }
 }
@@ -326,21 +350,30 @@ impl Placement {
     }
 }
 
-fn plane(plane: &Plane) -> contact::Plane {
+pub(super) fn plane(plane: &Plane) -> contact::Plane {
     let level = || DVec3::new(0.0, plane.y.unwrap_or(0.0), 0.0);
     contact::Plane {
         point: plane.point.map_or_else(level, DVec3::from_array).as_vec3(),
-        normal: plane.normal.map_or(DVec3::Y, |normal| DVec3::from_array(normal).normalize()).as_vec3(),
+        normal: plane.normal.map_or(Vec3::Y, unit),
         stiffness: plane.stiffness as f32,
         damping: plane.damping as f32,
         law: plane.law,
     }
 }
 
+/// A direction of length 1. One that has it already is taken as it is, so that what was saved comes back to the bit.
+fn unit(direction: [f64; 3]) -> Vec3 {
+    let written = vec3(direction);
+    if (written.length() - 1.0).abs() <= UNIT_TOLERANCE {
+        return written;
+    }
+    DVec3::from_array(direction).normalize().as_vec3()
+}
+
 fn material(stiffness: f64, damping: f64) -> Material {
     Material { stiffness: stiffness as f32, damping: damping as f32 }
 }
 
-fn vec3(vector: [f64; 3]) -> Vec3 {
+pub(super) fn vec3(vector: [f64; 3]) -> Vec3 {
     DVec3::from_array(vector).as_vec3()
 }

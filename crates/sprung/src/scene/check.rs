@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use std::ops::RangeInclusive;
 
 use super::choices::{Dt, OneOrEach, Pin};
+use super::group::check_exceptions;
 use super::suggest::{did_you_mean, shortened, steers};
 use super::types::{Body, Joint, Plane, Scene, Springs};
 use crate::build::Lattice;
@@ -109,6 +110,7 @@ fn check_bodies(scene: &Scene, max_points: u64) -> Result<()> {
         for (index, springs) in body.springs.iter().enumerate() {
             check_springs(&format!("{path}.springs[{index}]"), springs, body)?;
         }
+        check_forces(&path, body)?;
     }
     Ok(())
 }
@@ -292,7 +294,8 @@ fn check_springs(path: &str, springs: &Springs, body: &Body) -> Result<()> {
         }
     }
     let material = [springs.radius, springs.rest_length, Some(springs.stiffness), Some(springs.damping)];
-    check_material(path, material, springs.rest_scale, springs.pairs.is_some())
+    check_material(path, material, springs.rest_scale, springs.pairs.is_some())?;
+    check_exceptions(path, &springs.cut, &springs.except)
 }
 
 fn check_joint(path: &str, joint: &Joint, bodies: &[Body]) -> Result<()> {
@@ -323,7 +326,8 @@ fn check_joint(path: &str, joint: &Joint, bodies: &[Body]) -> Result<()> {
         }
     }
     let material = [joint.radius, joint.rest_length, Some(joint.stiffness), Some(joint.damping)];
-    check_material(path, material, joint.rest_scale, joint.pairs.is_some())
+    check_material(path, material, joint.rest_scale, joint.pairs.is_some())?;
+    check_exceptions(path, &joint.cut, &joint.except)
 }
 
 /// What springs and joints have in common: [radius, rest_length, stiffness, damping], and the rest scale.
@@ -343,6 +347,20 @@ fn check_material(path: &str, material: [Option<f64>; 4], rest_scale: f64, by_pa
         return Err(error.at_field(format!("{path}.rest_length")));
     }
     number(format!("{path}.rest_scale"), rest_scale, &LENGTH_RANGE, "")
+}
+
+fn check_forces(path: &str, body: &Body) -> Result<()> {
+    let mut points = HashSet::new();
+    for (index, force) in body.forces.iter().enumerate() {
+        let field = format!("{path}.forces[{index}]");
+        point_of(&format!("{field}.point"), force.point, body)?;
+        vector(&format!("{field}.force"), force.force, "N")?;
+        if !points.insert(force.point) {
+            let sentence = format!("pushes point {} a second time", force.point);
+            return Err(Error::new(Code::Duplicate, sentence).at_field(format!("{field}.point")));
+        }
+    }
+    Ok(())
 }
 
 /// Of several keys that exclude each other, one must be there.
@@ -417,7 +435,7 @@ fn vector(field: &str, value: [f64; 3], unit: &str) -> Result<()> {
     })
 }
 
-fn number(field: String, value: f64, range: &RangeInclusive<f32>, unit: &str) -> Result<()> {
+pub(super) fn number(field: String, value: f64, range: &RangeInclusive<f32>, unit: &str) -> Result<()> {
     if range.contains(&(value as f32)) {
         return Ok(());
     }

@@ -234,6 +234,57 @@ impl<'de> Visitor<'de> for EntryVisitor {
     }
 }
 
+/// Some of many things, by their numbers: one, or all from a first to a last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Numbers {
+    /// One, by its number (from 0).
+    One(u32),
+    /// All from the first to the last, both included.
+    Span([u32; 2]),
+}
+
+impl Numbers {
+    /// The first and the last.
+    pub(super) fn ends(self) -> [u32; 2] {
+        match self {
+            Self::One(number) => [number; 2],
+            Self::Span(ends) => ends,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Numbers {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(SomeVisitor)
+    }
+}
+
+struct SomeVisitor;
+
+impl<'de> Visitor<'de> for SomeVisitor {
+    type Value = Numbers;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number (from 0), or a list of the first and the last")
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Numbers, E> {
+        let number = u32::try_from(value).map_err(|_| E::invalid_value(Unexpected::Signed(value), &self))?;
+        Ok(Numbers::One(number))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Numbers, A::Error> {
+        let mut ends = [0; 2];
+        for (length, end) in ends.iter_mut().enumerate() {
+            let next = list.next_element()?;
+            *end =
+                next.ok_or_else(|| A::Error::invalid_length(length, &"a list of the first and the last"))?;
+        }
+        Ok(Numbers::Span(ends))
+    }
+}
+
 /// Points held in space.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]

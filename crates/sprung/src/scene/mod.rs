@@ -16,20 +16,24 @@ mod assemble;
 mod builtin;
 mod check;
 mod choices;
+mod group;
 mod read;
 mod set;
 mod shape;
 mod source;
 mod suggest;
 mod types;
+mod with_params;
 
 use toml::de::DeTable;
 
 pub use builtin::{BUILTIN, Builtin, Kind, STARTER};
 pub use check::MAX_POINTS;
-pub use choices::{BoxPin, Dt, OneOrEach, Pin, Region};
+pub use choices::{BoxPin, Dt, Numbers, OneOrEach, Pin, Region};
 pub use suggest::closest;
-pub use types::{Block, Body, Chain, Grid, GridPlane, Joint, Plane, Rotation, Scene, Springs};
+pub use types::{
+    Block, Body, Chain, Exception, Force, Grid, GridPlane, Joint, Plane, Rotation, Scene, Springs,
+};
 
 use crate::error::{Code, Error, Result};
 use source::Origin;

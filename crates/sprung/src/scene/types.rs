@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::choices::{Dt, OneOrEach, Pin, max_springs, substeps};
+use super::choices::{Dt, Numbers, OneOrEach, Pin, max_springs, substeps};
 use super::source::Origin;
 use crate::build::SpringKind;
 use crate::contact::ContactLaw;
@@ -123,6 +123,9 @@ pub struct Body {
     /// The springs among the body's points, in groups. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<Springs>,
+    /// Constant forces on single points. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forces: Vec<Force>,
 }
 
 /// Points in a row: the first at `origin`, each `step` from the one before.
@@ -222,6 +225,13 @@ pub struct Springs {
     #[serde(default = "unscaled")]
     #[schemars(range(min = 0))]
     pub rest_scale: f64,
+    /// Springs of this group that are cut, by their numbers in the group (from 0): a number, or [first, last].
+    /// Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cut: Vec<Numbers>,
+    /// Springs of this group that are unlike the others. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub except: Vec<Exception>,
 }
 
 /// Springs from one body to another. Say which points they join by `radius` or `pairs`.
@@ -252,6 +262,49 @@ pub struct Joint {
     #[serde(default = "unscaled")]
     #[schemars(range(min = 0))]
     pub rest_scale: f64,
+    /// Springs of this group that are cut, by their numbers in the group (from 0): a number, or [first, last].
+    /// Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cut: Vec<Numbers>,
+    /// Springs of this group that are unlike the others. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub except: Vec<Exception>,
+}
+
+/// Some springs of a group that are unlike the others. What is not said here they have from the group; where two entries
+/// say the same thing of a spring, the later one holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Exception {
+    /// Which springs, by their numbers in the group (from 0): a number, or [first, last].
+    #[schemars(length(min = 1))]
+    pub springs: Vec<Numbers>,
+    /// Stiffness, N/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub stiffness: Option<f64>,
+    /// Damping along the spring, N·s/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub damping: Option<f64>,
+    /// Rest length, as a multiple of the length as built.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub rest_scale: Option<f64>,
+    /// Rest length, m. Say this or `rest_scale`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub rest_length: Option<f64>,
+}
+
+/// A constant force on a point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// The point's number in the body (from 0).
+    pub point: u32,
+    /// The force, N.
+    pub force: [f64; 3],
 }
 
 fn one_substep() -> u32 {

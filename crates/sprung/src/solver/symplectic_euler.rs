@@ -13,7 +13,7 @@ use crate::workers::Workers;
 /// v⁺ = v + dt·M⁻¹ f(x, v), then x⁺ = x + dt·v⁺.
 ///
 /// Owns its scratch memory, in which it packs masses and springs: make it anew when masses, pins, springs or their
-/// parameters have changed. Each step is the same function of parameters and state, whatever was computed before.
+/// parameters have changed, and [`refresh_point`](Self::refresh_point) where a hand takes or leaves one. Each step is the same function of parameters and state, whatever was computed before.
 #[derive(Clone, Debug)]
 pub struct SymplecticEuler {
     springs: SpringKernel,
@@ -30,6 +30,14 @@ impl SymplecticEuler {
             inverse_mass: (0..model.point_count()).map(|point| params.inverse_mass(point)).collect(),
             forces: vec![Vec3::ZERO; model.point_count()],
         }
+    }
+
+    /// Learns that a point is now [carried](Params::carried), or no longer: cheaper than making the solver anew.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn refresh_point(&mut self, params: &Params, point: usize) {
+        self.inverse_mass[point] = params.inverse_mass(point);
     }
 
     /// Takes one step. Returns whether every position is still finite; if not, the state is of no use any more.
@@ -59,7 +67,7 @@ impl SymplecticEuler {
         finite
     }
 
-    /// The largest force on any point that can move, N, at this state.
+    /// The largest force on any point that it can move, N, at this state.
     pub fn residual_force(&mut self, params: &Params, state: &State, workers: &dyn Workers) -> f64 {
         self.accumulate(params, state, workers);
         let free =
@@ -67,6 +75,14 @@ impl SymplecticEuler {
         let largest = free.map(|(force, _)| force.as_dvec3().length()).fold(0.0, f64::max);
         self.forces.fill(Vec3::ZERO);
         largest
+    }
+
+    /// The total force on each point at this state, N, as a step would use it. At a point that no force can move this is
+    /// what pulls at it, but for springs to others that are held, which a step need not know.
+    pub fn forces(&mut self, params: &Params, state: &State, workers: &dyn Workers, into: &mut Vec<Vec3>) {
+        self.accumulate(params, state, workers);
+        into.clone_from(&self.forces);
+        self.forces.fill(Vec3::ZERO);
     }
 
     fn accumulate(&mut self, params: &Params, state: &State, workers: &dyn Workers) {

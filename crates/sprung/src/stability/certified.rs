@@ -68,6 +68,12 @@ const ROUNDING: f64 = 1e-12;
 /// # Panics
 /// If `params` is not of this model ([`Params::validate`]), or there are fewer positions than points.
 pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<Limit> {
+    let (springs, anchors) = loads(model, params, positions);
+    tightest(model, params, &springs, &anchors)
+}
+
+/// The loads of springs and of anchors at each point in one configuration.
+fn loads(model: &Model, params: &Params, positions: &[Vec3]) -> (Vec<Load>, Vec<Load>) {
     let mut stiffness = vec![Symmetric3::default(); model.point_count()];
     let mut damping = stiffness.clone();
     for (spring, &[i, j]) in model.springs().iter().enumerate() {
@@ -88,7 +94,7 @@ pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<L
             damping[end].add(n, d, damping_across);
         }
     }
-    let springs: Vec<Load> = (0..model.point_count())
+    let springs = (0..model.point_count())
         .map(|point| {
             let per_mass = inverse_mass(params, point);
             if per_mass == 0.0 {
@@ -99,8 +105,7 @@ pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<L
             Load { omega2, c }
         })
         .collect();
-    let anchors = anchor_loads(params, |plane, point| plane.depth(positions[point]) > 0.0);
-    tightest(model, params, &springs, &anchors)
+    (springs, anchor_loads(params, |plane, point| plane.depth(positions[point]) > 0.0))
 }
 
 /// A limit on dt that is safe in every configuration the network can ever take, with every point touching every
@@ -126,6 +131,14 @@ pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<L
 /// # Panics
 /// If `params` is not of this model ([`Params::validate`]).
 pub fn every_configuration(model: &Model, params: &Params) -> Option<Limit> {
+    let (springs, anchors) = loads_everywhere(model, params);
+    // Rounded down once more: equal limits may round differently, and this one is never to be above the certified.
+    let limit = tightest(model, params, &springs, &anchors)?;
+    Some(Limit { dt: limit.dt * (1.0 - ROUNDING), ..limit })
+}
+
+/// The largest loads of springs and of anchors at each point that any configuration has.
+fn loads_everywhere(model: &Model, params: &Params) -> (Vec<Load>, Vec<Load>) {
     let mut springs = vec![Load::default(); model.point_count()];
     for (spring, &[i, j]) in model.springs().iter().enumerate() {
         if params.is_live(model, spring) {
@@ -139,10 +152,42 @@ pub fn every_configuration(model: &Model, params: &Params) -> Option<Limit> {
     for (point, load) in springs.iter_mut().enumerate() {
         *load = load.times(inverse_mass(params, point));
     }
-    let anchors = anchor_loads(params, |_, _| true);
-    // Rounded down once more: equal limits may round differently, and this one is never to be above the certified.
-    let limit = tightest(model, params, &springs, &anchors)?;
-    Some(Limit { dt: limit.dt * (1.0 - ROUNDING), ..limit })
+    (springs, anchor_loads(params, |_, _| true))
+}
+
+/// The factor on the damping of all springs that makes the step `dt` this share of the certified limit, or, where it is
+/// within that, of the limit of every configuration. `None` where it is within both, or no factor above 0 does.
+pub(crate) fn damping_scale(
+    model: &Model,
+    params: &Params,
+    positions: &[Vec3],
+    dt: f64,
+    share: f64,
+) -> Option<f64> {
+    let is_over = |limit: Option<Limit>| limit.is_some_and(|limit| dt > limit.dt);
+    let (springs, anchors) = if is_over(certified(model, params, positions)) {
+        loads(model, params, positions)
+    } else if is_over(every_configuration(model, params)) {
+        loads_everywhere(model, params)
+    } else {
+        return None;
+    };
+    let dt = dt / share;
+    // dt²ω² + 2dt(s·c + c_anchor) ≤ 4 at every spring, and at every anchor by itself.
+    let anchors_allow = anchors.iter().all(|anchor| anchor.demand(dt) < 4.0);
+    let mut scale: f64 = 1.0;
+    for (spring, ends) in model.springs().iter().enumerate() {
+        if params.is_live(model, spring) {
+            let [i, j] = ends.map(|end| end as usize);
+            let (here, anchor) = (springs[i] + springs[j], anchors[i].max(anchors[j]));
+            let without_dampers = Load { c: anchor.c, ..here + anchor };
+            let left = 4.0 - without_dampers.demand(dt);
+            if here.c > 0.0 || left <= 0.0 {
+                scale = scale.min(left / (2.0 * dt * here.c));
+            }
+        }
+    }
+    (anchors_allow && scale > 0.0 && scale < 1.0).then_some(scale)
 }
 
 /// Bounds of the squared frequency ω² (1/s²) and the damping per mass c (1/s).

@@ -38,6 +38,7 @@ mod sharp;
 mod symmetric3;
 mod top_mode;
 
+pub(crate) use certified::damping_scale;
 pub use certified::{certified, every_configuration};
 pub use sharp::{Sharp, sharp};
 
