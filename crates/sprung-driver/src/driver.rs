@@ -286,10 +286,6 @@ impl Driver {
         if is_last {
             self.pictures.begin(self.run.simulation.state());
         }
-        // What another hand did at this step when it was recorded is over where the record ends.
-        if self.hand.is_none() && !self.run.is_in_past() {
-            self.run.let_go();
-        }
         self.run.step()?;
         self.steps_taken += 1;
         Ok(())

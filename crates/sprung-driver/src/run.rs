@@ -124,6 +124,9 @@ impl Run {
         if settings_are_same(params, self.params()) {
             return Ok(false);
         }
+        params.validate(self.simulation.model())?;
+        // First, since a branch has no hands of the past.
+        self.part();
         let params = with_hands_of(params, self.params());
         self.change(Change::Params(Arc::new(params)))?;
         Ok(true)

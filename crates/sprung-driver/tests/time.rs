@@ -169,6 +169,24 @@ fn a_violent_pull_replays_bit_for_bit() {
 }
 
 #[test]
+fn a_branch_in_the_middle_of_a_pull_lets_go() {
+    for hard in [false, true] {
+        let mut handle = open("chain");
+        handle.send(Command::Play(true));
+        handle.send(Command::Pull(Pull { point: 14, target: Vec3::splat(30.0), hard }));
+        frames(&mut handle, 60);
+        at(&mut handle, 40);
+        let held = handle.report().params.clone();
+        assert_eq!((held.grabs.len(), held.carried.len()), if hard { (0, 1) } else { (1, 0) });
+        handle.send(edit("gravity", gravity(-1.0)));
+        check(&handle.report());
+        handle.send(Command::Play(true));
+        frames(&mut handle, 30);
+        check(&handle.report());
+    }
+}
+
+#[test]
 fn seeking_comes_in_portions_and_the_newest_place_wins() {
     let mut driver = Driver::new(source("cloth")).expect("it opens");
     driver.obey(Command::Play(true));

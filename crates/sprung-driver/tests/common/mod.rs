@@ -82,6 +82,10 @@ pub fn check(report: &Report) {
     assert!(report.samples.iter().is_sorted_by(|a, b| a.step < b.step));
     assert!(report.samples.last().is_none_or(|last| last.step <= timeline.newest.0));
     assert!(report.samples.iter().all(|sample| sample.energy.total().is_finite()));
+    if report.pull.is_none() && report.now.step == timeline.newest.0 && report.busy.is_none() {
+        let held = report.params.grabs.len() + report.params.carried.len();
+        assert_eq!(held, 0, "nobody pulls, and points are held");
+    }
     if let Some((point, _)) = report.pull {
         let grabbed = report.params.grabs.iter().any(|grab| grab.point == point);
         assert!(grabbed || report.params.carried.contains_key(&point));
