@@ -27,6 +27,8 @@ pub enum Command {
     Frame,
     /// Back to the first state, with the parameters as they are now.
     Reset,
+    /// The scene's own parameters once more, from now on; an edit that can be undone.
+    OwnValues,
     /// Changes parameters from now on; can be undone.
     Edit(Edit),
     /// Takes the last edit back, from now on.
@@ -43,8 +45,10 @@ pub enum Command {
     Pull(Pull),
     /// Lets go of what is pulled.
     Release,
-    /// Brings the scene to rest.
+    /// Brings the scene to rest. Any command that asks for something else breaks it off, and all is as before.
     Settle,
+    /// Finds the true limit of dt now, however large the model.
+    FindSharpLimit,
     /// Whether every step's works are summed for the energy ledger.
     KeepLedger(bool),
     /// Whether reports carry the force on every point.
@@ -53,13 +57,16 @@ pub enum Command {
     Watch(Vec<Probe>),
     /// Whether the run that a branch left is shown with it.
     Compare(bool),
-    /// Goes back by so many seconds of simulated time after a blow-up, and plays on.
+    /// Mends what made the run blow up; an edit that can be undone.
+    Fix(Fix),
+    /// Goes back by so many seconds of simulated time after a blow-up, as far as they are recorded, and plays on from there
+    /// with the parameters as they are now. With a [`Fix`] sent first or right after, it goes on mended.
     RewindAndGoOn(f64),
     /// The trouble has been read.
     Dismiss,
 }
 
-/// Some changes that are one to the user.
+/// Some changes that are one to the user. Hands are no edits: see [`Command::Pull`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
     /// What it does, for the undo button: `"gravity"`, `"cut a spring"`.
@@ -74,6 +81,65 @@ impl Edit {
     /// A single edit.
     pub fn new(label: impl Into<String>, changes: Vec<Change>) -> Self {
         Self { label: label.into(), changes, continues: false }
+    }
+}
+
+impl Command {
+    /// Whether nothing is left of an earlier command when this one follows: places to seek to, places of one hand, values
+    /// of one slider.
+    pub(crate) fn replaces(&self, earlier: &Self) -> bool {
+        match (self, earlier) {
+            (Self::Seek(_), Self::Seek(_)) => true,
+            (Self::Pull(new), Self::Pull(old)) => (new.point, new.hard) == (old.point, old.hard),
+            (Self::Edit(new), Self::Edit(old)) => new.replaces(old),
+            _ => false,
+        }
+    }
+}
+
+impl Edit {
+    /// Whether this goes on with an edit, and sets all that that one set.
+    fn replaces(&self, earlier: &Self) -> bool {
+        self.continues
+            && self.label == earlier.label
+            && self.changes.len() == earlier.changes.len()
+            && self.changes.iter().zip(&earlier.changes).all(|(new, old)| sets_the_same(new, old))
+    }
+}
+
+fn sets_the_same(new: &Change, old: &Change) -> bool {
+    use Change::{Damping, Dt, Force, Gravity, Mass, Planes, RestScale, Stiffness, Substeps};
+    match (new, old) {
+        (Dt(_), Dt(_)) | (Substeps(_), Substeps(_)) | (Gravity(_), Gravity(_)) | (Planes(_), Planes(_)) => {
+            true
+        }
+        (Mass(new, _), Mass(old, _))
+        | (Stiffness(new, _), Stiffness(old, _))
+        | (Damping(new, _), Damping(old, _))
+        | (RestScale(new, _), RestScale(old, _)) => new == old,
+        (Force(new, _), Force(old, _)) => new == old,
+        _ => false,
+    }
+}
+
+/// A way to mend a run that blew up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fix {
+    /// Steps of this length, s.
+    Dt(f64),
+    /// More steps for the same time of a frame, as many as are stable in every configuration.
+    Substeps,
+    /// Every spring's damping times this: large damping, too, asks for short steps.
+    Damping(f64),
+}
+
+impl fmt::Display for Fix {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Dt(dt) => write!(f, "dt = {} s", sprung::significant(*dt)),
+            Self::Substeps => write!(f, "more sub-steps"),
+            Self::Damping(factor) => write!(f, "damping times {}", sprung::significant(*factor)),
+        }
     }
 }
 
@@ -140,4 +206,25 @@ pub enum Probe {
     Strain(usize),
     /// A spring's k_s(ℓ − L), N.
     Tension(usize),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_becomes_pointless_is_replaced() {
+        let slider = |continues, range, value| {
+            let changes = vec![Change::Stiffness(range, value)];
+            Command::Edit(Edit { continues, ..Edit::new("stiffness", changes) })
+        };
+        assert!(slider(true, 0..9, 2.0).replaces(&slider(false, 0..9, 1.0)));
+        assert!(!slider(false, 0..9, 2.0).replaces(&slider(false, 0..9, 1.0)), "two edits");
+        assert!(!slider(true, 1..9, 2.0).replaces(&slider(true, 0..9, 1.0)), "other springs");
+        assert!(!slider(true, 0..9, 2.0).replaces(&Command::Step));
+        let pull = |point, hard| Command::Pull(Pull { point, target: Vec3::ZERO, hard });
+        assert!(pull(1, true).replaces(&pull(1, true)));
+        assert!(!pull(1, true).replaces(&pull(1, false)) && !pull(1, true).replaces(&pull(2, true)));
+        assert!(Command::Seek(1).replaces(&Command::Seek(2)) && !Command::Step.replaces(&Command::Step));
+    }
 }

@@ -2,31 +2,85 @@
 
 use std::sync::Arc;
 
+use web_time::{Duration, Instant};
+
 use crate::command::Command;
 use crate::driver::Driver;
 use crate::report::Report;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::thread::Thread;
 
-/// A driver as the front end sees it.
-pub struct Handle(Box<Driver>);
+/// The longest that a page's driver works before the page is drawn again.
+const PAGE_BUDGET: Duration = Duration::from_millis(12);
+
+/// A driver as the front end sees it. Dropping it ends the driver's work.
+pub struct Handle(Place);
+
+/// Where the driver works.
+enum Place {
+    /// Here, as long as it takes.
+    Inline(Box<Driver>),
+    /// Here, a few milliseconds at a time.
+    Page(Box<Driver>),
+    #[cfg(not(target_arch = "wasm32"))]
+    Thread(Thread),
+}
 
 impl Handle {
-    /// A driver that works when it is told that time has passed.
+    /// A driver that does all its work when it is asked or told that time has passed, however long that takes, and reads no
+    /// clock: the same calls give the same reports. For tests.
     pub fn inline(driver: Driver) -> Self {
-        Self(Box::new(driver))
+        Self(Place::Inline(Box::new(driver)))
     }
 
-    /// Asks for something. It is done before the next report, or soon.
+    /// A driver that works when it is told that time has passed, for some milliseconds at the most: for pages, which have no
+    /// other thread to work on.
+    pub fn page(driver: Driver) -> Self {
+        Self(Place::Page(Box::new(driver)))
+    }
+
+    /// A driver on a thread of its own. `wake` is called there when there is a new report.
+    ///
+    /// # Errors
+    /// [`Code::Unsupported`](sprung::Code::Unsupported) if the system gives no thread.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn thread(driver: Driver, wake: Box<dyn Fn() + Send>) -> sprung::Result<Self> {
+        Ok(Self(Place::Thread(Thread::start(driver, wake)?)))
+    }
+
+    /// Asks for something. Inline it is done at once, else soon.
     pub fn send(&mut self, command: Command) {
-        self.0.obey(command);
+        match &mut self.0 {
+            Place::Inline(driver) => {
+                driver.obey(command);
+                driver.advance(0.0, &mut || true);
+            }
+            Place::Page(driver) => driver.obey(command),
+            #[cfg(not(target_arch = "wasm32"))]
+            Place::Thread(thread) => thread.send(command),
+        }
     }
 
-    /// Real time has passed, s. Inline, this is when the work is done.
+    /// Real time has passed, s. Inline and on a page, this is when the work is done; a thread has its own clock.
     pub fn pass(&mut self, seconds: f64) {
-        self.0.advance(seconds, &mut || true);
+        match &mut self.0 {
+            Place::Inline(driver) => driver.advance(seconds, &mut || true),
+            Place::Page(driver) => {
+                let begin = Instant::now();
+                driver.advance(seconds, &mut || begin.elapsed() < PAGE_BUDGET);
+                driver.measured(begin.elapsed().as_secs_f64());
+            }
+            #[cfg(not(target_arch = "wasm32"))]
+            Place::Thread(_) => {}
+        }
     }
 
     /// The newest report.
     pub fn report(&mut self) -> Arc<Report> {
-        self.0.report()
+        match &mut self.0 {
+            Place::Inline(driver) | Place::Page(driver) => driver.report(),
+            #[cfg(not(target_arch = "wasm32"))]
+            Place::Thread(thread) => thread.report(),
+        }
     }
 }

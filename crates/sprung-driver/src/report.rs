@@ -6,7 +6,8 @@ use sprung::scene::Scene;
 use sprung::stability::Limit;
 use sprung::{BlowUp, Energy, Error, Model, Params, Snapshot, Vec3};
 
-use crate::command::{Pace, Probe};
+use crate::command::{Fix, Pace, Probe};
+use crate::samples::Samples;
 
 /// A scene that was opened.
 #[derive(Clone, Debug)]
@@ -40,7 +41,7 @@ pub struct Report {
     pub blend: f64,
     /// The force on every point, N, if wanted.
     pub forces: Option<Arc<Vec<Vec3>>>,
-    /// The energy of the newest step.
+    /// The energy of the newest step; of a large model that plays, of a step up to a third of a second ago.
     pub energy: Energy,
     /// Whether the ledger has been on since the first step, so that its sums balance.
     pub ledger_is_whole: bool,
@@ -68,10 +69,12 @@ pub struct Report {
     pub comparison: Option<Comparison>,
     /// The quantities that each sample holds.
     pub watched: Arc<Vec<Probe>>,
-    /// Samples of the run so far, in order of time; shared, grown in place when nobody else holds them.
-    pub samples: Arc<Vec<Sample>>,
+    /// Samples of the recorded run, in order of time: also of what lies beyond `now` after going back.
+    pub samples: Samples,
     /// What went wrong, until it is dismissed.
     pub trouble: Option<Trouble>,
+    /// What would mend a blow-up: only fixes that are stable at its last good state.
+    pub fixes: Vec<Fix>,
     /// What it is busy with, where that takes longer than a moment, such as "replaying".
     pub busy: Option<String>,
 }
@@ -81,8 +84,10 @@ pub struct Report {
 pub struct Stability {
     /// The certified limit of this configuration and what sets it.
     pub certified: Option<Limit>,
-    /// The true limit of this configuration; computed now and then.
+    /// The true limit of the configuration at `sharp_step`; computed now and then.
     pub sharp: Option<f64>,
+    /// The step of which `sharp` holds; `None` if it has not been computed under these parameters.
+    pub sharp_step: Option<u64>,
     /// The limit in every configuration.
     pub every_configuration: Option<f64>,
 }
@@ -95,15 +100,24 @@ pub struct Timeline {
     /// The newest.
     pub newest: (u64, f64),
     /// Steps at which something was changed, and what.
-    pub marks: Vec<(u64, String)>,
+    pub marks: Arc<Vec<(u64, String)>>,
+    /// Step lengths: from this step, at this time (s), steps of this dt (s).
+    pub clock: Arc<Vec<(u64, f64, f64)>>,
     /// Memory of the recording, bytes, and how much it may be.
     pub bytes: (usize, usize),
+}
+
+impl Timeline {
+    /// The time of a recorded step, s.
+    pub fn time_of(&self, step: u64) -> f64 {
+        crate::timeline::time_of(&self.clock, step)
+    }
 }
 
 /// An earlier run beside this one.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Its state at this step, or its last.
+    /// Its state at this time, or its last.
     pub snapshot: Arc<Snapshot>,
     /// The step at which the two parted.
     pub parted: u64,

@@ -1,0 +1,267 @@
+//! A driver on a thread of its own: commands go in through a channel, the newest report comes out through a mutex.
+
+use std::any::Any;
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+use sprung::{Code, Error, Result};
+use web_time::{Duration, Instant};
+
+use crate::command::Command;
+use crate::driver::Driver;
+use crate::job::{leaves_alone, queue};
+use crate::report::{Report, Trouble};
+use crate::supervisor::Supervisor;
+
+/// The longest that the driver works before it reports and hears what is asked.
+const BUDGET: Duration = Duration::from_millis(8);
+
+/// The shortest and the longest sleep while it plays: reports say where between two steps to draw, but more than a few
+/// hundred of them a second are of no use, however short the steps.
+const SLEEP: [Duration; 2] = [Duration::from_millis(4), Duration::from_millis(8)];
+
+/// Rest after which the true limit of a large model is looked for, which may take seconds.
+const IDLE: Duration = Duration::from_millis(700);
+
+/// From one word on how far a long work is to the next.
+const WORD_EVERY: Duration = Duration::from_millis(100);
+
+/// The front end's side.
+pub(crate) struct Thread {
+    commands: Option<Sender<Command>>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What both sides see.
+struct Shared {
+    newest: Mutex<Arc<Report>>,
+    /// The front end is gone: whatever is under way is of no use any more.
+    quits: AtomicBool,
+    wake: Mutex<Box<dyn Fn() + Send>>,
+}
+
+impl Thread {
+    pub fn start(mut driver: Driver, wake: Box<dyn Fn() + Send>) -> Result<Self> {
+        let (sender, receiver) = channel();
+        let newest = Mutex::new(driver.report());
+        let shared = Arc::new(Shared { newest, quits: AtomicBool::new(false), wake: Mutex::new(wake) });
+        let worker = Worker {
+            driver,
+            inbox: Inbox { receiver, heard: VecDeque::new(), is_open: true },
+            shared: shared.clone(),
+        };
+        let theirs = shared.clone();
+        let body = move || {
+            // Whatever goes wrong in there, the front end hears of it and goes on.
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| worker.work())) {
+                theirs.publish_end(&*panic);
+            }
+        };
+        let thread = std::thread::Builder::new().name("driver".to_owned()).spawn(body).map_err(|error| {
+            Error::new(Code::Unsupported, format!("the system gives no thread to simulate on: {error}"))
+        })?;
+        Ok(Self { commands: Some(sender), shared, thread: Some(thread) })
+    }
+
+    pub fn send(&self, command: Command) {
+        if let Some(commands) = &self.commands {
+            // A thread that has ended has said so in its last report.
+            let _ = commands.send(command);
+        }
+    }
+
+    pub fn report(&self) -> Arc<Report> {
+        lock(&self.shared.newest).clone()
+    }
+}
+
+impl Drop for Thread {
+    fn drop(&mut self) {
+        self.shared.quits.store(true, Ordering::Relaxed);
+        self.commands = None;
+        if let Some(thread) = self.thread.take() {
+            // Its panics have been caught inside.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    fn publish(&self, report: Arc<Report>) {
+        *lock(&self.newest) = report;
+        lock(&self.wake)();
+    }
+
+    /// As the last report, but busy with this.
+    fn publish_busy(&self, what: &str) {
+        let report = Report { busy: Some(what.to_owned()), ..(**lock(&self.newest)).clone() };
+        self.publish(Arc::new(report));
+    }
+
+    /// As the last report, but paused for good.
+    fn publish_end(&self, panic: &(dyn Any + Send)) {
+        let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        let sentence = format!(
+            "the simulation has stopped for good: {}",
+            text.as_deref().unwrap_or("it does not say why")
+        );
+        let error = Error::new(Code::Unsupported, sentence).with_fix(
+            "save what you need and start the program anew; this is an error in it, please report it",
+        );
+        let last = (**lock(&self.newest)).clone();
+        let trouble = Some(Trouble::Refused(error));
+        self.publish(Arc::new(Report { playing: false, speed: 0.0, busy: None, trouble, ..last }));
+    }
+}
+
+/// A mutex whose holder panicked still holds a whole value: each is replaced in one go.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The driver's side.
+struct Worker {
+    driver: Driver,
+    inbox: Inbox,
+    shared: Arc<Shared>,
+}
+
+impl Worker {
+    /// Until the front end is gone.
+    fn work(mut self) {
+        let mut then = Instant::now();
+        while self.inbox.is_open || !self.inbox.heard.is_empty() {
+            self.wait();
+            self.inbox.listen();
+            if self.shared.quits.load(Ordering::Relaxed) {
+                return;
+            }
+            self.obey();
+            let now = Instant::now();
+            let passed = now.duration_since(then).as_secs_f64();
+            then = now;
+            let mut turn =
+                Turn { until: now + BUDGET, told: now, inbox: &mut self.inbox, shared: &self.shared };
+            self.driver.advance_under(passed, &mut turn);
+            self.driver.measured(now.elapsed().as_secs_f64());
+            self.publish();
+        }
+    }
+
+    /// Sleeps until there is something to do.
+    fn wait(&mut self) {
+        if !self.inbox.heard.is_empty() {
+            return;
+        }
+        if self.driver.wants_sharp() {
+            if self.inbox.wait(IDLE) {
+                return;
+            }
+            self.driver.obey(Command::FindSharpLimit);
+            self.publish();
+        }
+        if self.driver.is_idle() {
+            self.inbox.wait_forever();
+        } else {
+            let seconds = self.driver.seconds_to_step();
+            let [shortest, longest] = SLEEP.map(|sleep| sleep.as_secs_f64());
+            let is_behind = seconds <= 0.0;
+            let sleep = if is_behind { 0.0 } else { seconds.clamp(shortest, longest) };
+            self.inbox.wait(Duration::from_secs_f64(sleep));
+        }
+    }
+
+    fn obey(&mut self) {
+        while let Some(command) = self.inbox.heard.pop_front() {
+            if let Command::Open(source) = &command {
+                self.shared.publish_busy(&format!("opening {}", source.name));
+            }
+            let settles = matches!(command, Command::Settle);
+            self.driver.obey(command);
+            // Whatever comes after it would break it off.
+            if settles && self.inbox.heard.iter().all(leaves_alone) {
+                self.publish();
+            }
+        }
+    }
+
+    fn publish(&mut self) {
+        let report = self.driver.report();
+        if !Arc::ptr_eq(&report, &lock(&self.shared.newest)) {
+            self.shared.publish(report);
+        }
+    }
+}
+
+/// Commands, as they come.
+struct Inbox {
+    receiver: Receiver<Command>,
+    heard: VecDeque<Command>,
+    is_open: bool,
+}
+
+impl Inbox {
+    /// Takes in what has come.
+    fn listen(&mut self) {
+        loop {
+            match self.receiver.try_recv() {
+                Ok(command) => self.hear(command),
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => {
+                    self.is_open = false;
+                    return;
+                }
+            }
+        }
+    }
+
+    fn hear(&mut self, command: Command) {
+        queue(&mut self.heard, command);
+    }
+
+    /// Sleeps until something comes, so long at the most; gives whether something has.
+    fn wait(&mut self, longest: Duration) -> bool {
+        match self.receiver.recv_timeout(longest) {
+            Ok(command) => self.hear(command),
+            Err(RecvTimeoutError::Timeout) => return false,
+            Err(RecvTimeoutError::Disconnected) => self.is_open = false,
+        }
+        true
+    }
+
+    fn wait_forever(&mut self) {
+        match self.receiver.recv() {
+            Ok(command) => self.hear(command),
+            Err(_) => self.is_open = false,
+        }
+    }
+}
+
+/// One turn of work: some milliseconds of steps, or longer where work has no portions and nobody asks for anything else.
+struct Turn<'a> {
+    until: Instant,
+    told: Instant,
+    inbox: &'a mut Inbox,
+    shared: &'a Shared,
+}
+
+impl Supervisor for Turn<'_> {
+    fn may_go_on(&mut self) -> bool {
+        Instant::now() < self.until && !self.shared.quits.load(Ordering::Relaxed)
+    }
+
+    fn may_keep_busy(&mut self, what: &str) -> bool {
+        self.inbox.listen();
+        if self.told.elapsed() >= WORD_EVERY {
+            self.told = Instant::now();
+            self.shared.publish_busy(what);
+        }
+        self.inbox.is_open && self.inbox.heard.iter().all(leaves_alone)
+    }
+}
