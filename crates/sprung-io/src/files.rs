@@ -222,6 +222,15 @@ pub fn spool_beside(path: &Path) -> Result<File> {
     tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))
 }
 
+/// A temporary file without a name, in the system's folder for such: for what waits before anybody has said where it is
+/// to go. It is gone when it is dropped, and when the run is killed.
+///
+/// # Errors
+/// Those of the system.
+pub fn spool() -> io::Result<File> {
+    tempfile::tempfile()
+}
+
 /// Reads a file of at most `most` bytes; a larger one is refused unread.
 ///
 /// # Errors

@@ -128,10 +128,15 @@ impl Framing {
         });
         let forward = -DVec3::new(sin_a * cos_e, sin_e, cos_a * cos_e);
         let right = DVec3::new(cos_a, 0.0, -sin_a);
-        let up = right.cross(forward);
+        Self::along([right, right.cross(forward), forward], low, high)
+    }
+
+    /// Begins a view along the third of three unit vectors (right, up, along the view) that fills a rectangle of the
+    /// picture (two corners, pixels).
+    pub fn along(axes: [DVec3; 3], low: Vec2, high: Vec2) -> Self {
         let area = (high - low).max(Vec2::ONE).as_dvec2();
         Self {
-            axes: [right, up, forward],
+            axes,
             tan: [TAN_HALF_HEIGHT * area.x / area.y, TAN_HALF_HEIGHT],
             most: [f64::MIN; 2],
             least: [f64::MAX; 2],

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use sprung::Result;
 use sprung_io::files::write_error;
@@ -40,18 +41,15 @@ impl Export for Animation {
     }
 
     fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {
-        let Self { mut file, mut spool, size } = *self;
+        let Self { file, mut spool, size } = *self;
         let path = file.path().to_owned();
-        let fail = |error: io::Error| write_error(&path, &error);
         let schedule = schedule(spool.times(), spool.info().frame_time);
         let (Some(&(first, _)), Some(&(last, _))) = (schedule.first(), schedule.last()) else {
             return Err(no_frames(&path));
         };
         let view = spool.view();
 
-        // The palette is learnt from five pictures spread over the motion.
-        let mut lessons: Vec<usize> = (0..5).map(|part| first + (last - first) * part / 4).collect();
-        lessons.dedup();
+        let lessons = lessons(first, last);
         let mut pictures = Vec::new();
         spool.draw(
             &view,
@@ -62,32 +60,74 @@ impl Export for Animation {
                 go_on(progress(0.0), &path)
             },
         )?;
-        let palette = Palette::learn(&pictures);
+        let mut writer = GifWriter::begin(file, size, Palette::learn(&pictures))?;
         drop(pictures);
-
-        let [width, height] = size.map(|side| side as u16); // at most 8192
-        let mut encoder =
-            gif::Encoder::new(&mut file, width, height, palette.rgb()).map_err(encoding).map_err(fail)?;
-        encoder.set_repeat(gif::Repeat::Infinite).map_err(encoding).map_err(fail)?;
         let frames: Vec<usize> = schedule.iter().map(|&(frame, _)| frame).collect();
-        let mut before: Vec<u8> = Vec::new();
+        let palette = writer.palette.clone();
         spool.draw(
             &view,
             &frames,
             |image: Image| palette.indices(&image),
             |index, indices| {
-                let mut frame = changed_part(&before, &indices, width, palette.transparent());
-                frame.delay = schedule[index].1;
-                encoder.write_frame(&frame).map_err(encoding).map_err(fail)?;
-                drop(frame);
-                before = indices;
+                writer.write(indices, schedule[index].1)?;
                 go_on(progress((index + 1) as f64 / frames.len() as f64), &path)
             },
         )?;
-        drop(encoder);
-        let bytes = file.finish()?;
-        Ok(Written { path, bytes, frames: frames.len() as u64 })
+        writer.finish()
     }
+}
+
+/// A file that takes one picture after the other. Dropped unfinished, it is removed.
+pub(super) struct GifWriter {
+    path: PathBuf,
+    encoder: gif::Encoder<PartialFile>,
+    palette: Arc<Palette>,
+    width: u16,
+    before: Vec<u8>,
+    frames: u64,
+}
+
+impl GifWriter {
+    /// Begins an animation of pictures of this size, in the colours of a palette.
+    pub fn begin(file: PartialFile, size: [u32; 2], palette: Palette) -> Result<Self> {
+        let path = file.path().to_owned();
+        let [width, height] = size.map(|side| side as u16); // at most 8192
+        let encoder = gif::Encoder::new(file, width, height, palette.rgb());
+        let mut encoder = encoder.map_err(|error| write_error(&path, &encoding(error)))?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| write_error(&path, &encoding(error)))?;
+        Ok(Self { path, encoder, palette: Arc::new(palette), width, before: Vec::new(), frames: 0 })
+    }
+
+    /// The palette's index for each pixel of a picture.
+    pub fn indices(&self, image: &Image) -> Vec<u8> {
+        self.palette.indices(image)
+    }
+
+    /// Takes the next picture, as indices, to be shown for `delay` hundredths of a second.
+    pub fn write(&mut self, indices: Vec<u8>, delay: u16) -> Result<()> {
+        let mut frame = changed_part(&self.before, &indices, self.width, self.palette.transparent());
+        frame.delay = delay;
+        self.encoder.write_frame(&frame).map_err(|error| write_error(&self.path, &encoding(error)))?;
+        drop(frame);
+        self.before = indices;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Completes the file and gives it its name.
+    pub fn finish(self) -> Result<Written> {
+        let Self { path, encoder, frames, .. } = self;
+        let file = encoder.into_inner().map_err(|error| write_error(&path, &encoding(error)))?;
+        let bytes = file.finish()?;
+        Ok(Written { path, bytes, frames })
+    }
+}
+
+/// The palette is learnt from five pictures spread over the motion.
+pub(super) fn lessons(first: usize, last: usize) -> Vec<usize> {
+    let mut lessons: Vec<usize> = (0..5).map(|part| first + (last - first) * part / 4).collect();
+    lessons.dedup();
+    lessons
 }
 
 /// Which frames are shown, and for how long (hundredths of a second).

@@ -3,6 +3,7 @@
 mod gif;
 mod mp4;
 mod png;
+mod recording;
 mod spool;
 
 use std::ops::{ControlFlow, RangeInclusive};
@@ -15,6 +16,7 @@ use sprung_io::{Exporter, Options};
 pub use gif::GIF;
 pub use mp4::MP4;
 pub use png::{PNG, write_png};
+pub use recording::{Progressed, Recording, Writing};
 
 /// All exporters, chosen by the ending of a file's name.
 pub static EXPORTERS: &[Exporter] = &[CSV, NPZ, PNG, GIF, MP4];

@@ -24,13 +24,18 @@ const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     // Asked before the simulation, which may take long, and not after it.
-    if let Err(why) = probe(PATIENCE) {
-        let error = Error::new(Code::Unsupported, format!("a film is encoded by ffmpeg, and {why}"));
-        return Err(error.with_fix("install ffmpeg, or write a .gif").in_file(path.display().to_string()));
-    }
+    check_ffmpeg(path)?;
     // The colour of two by two pixels is stored together, so both sides must be even.
     let size = picture_size(path, options, [1280, 720])?.map(|side| side & !1);
     Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
+}
+
+/// Whether there is an ffmpeg that can make a film of `path`.
+pub(super) fn check_ffmpeg(path: &Path) -> Result<()> {
+    probe(PATIENCE).map_err(|why| {
+        let error = Error::new(Code::Unsupported, format!("a film is encoded by ffmpeg, and {why}"));
+        error.with_fix("install ffmpeg, or write a .gif").in_file(path.display().to_string())
+    })
 }
 
 /// Asks ffmpeg for its version; otherwise says why there is none to be had.
@@ -71,42 +76,69 @@ impl Export for Film {
         if spool.times().is_empty() {
             return Err(no_frames(&path));
         }
-        let rate = (1.0 / spool.info().frame_time).clamp(RATE_RANGE.0, RATE_RANGE.1);
-        let mut encoder =
-            Encoder::start(file.partial_path(), size, rate).map_err(|error| write_error(&path, &error))?;
+        let rate = 1.0 / spool.info().frame_time;
+        let mut writer = FilmWriter::begin(file, size, rate)?;
         let view = spool.view();
         let frames: Vec<usize> = (0..spool.times().len()).collect();
-        let mut broken = false;
-        let drawn = spool.draw(
+        spool.draw(
             &view,
             &frames,
             |image| image.rgb,
             |index, rgb| {
-                if encoder.write(&rgb).is_err() {
-                    broken = true; // ffmpeg closed its end; its own words say why
-                    return Err(Error::new(Code::Unwritable, "ffmpeg stopped"));
-                }
+                writer.write(&rgb)?;
                 go_on(progress((index + 1) as f64 / frames.len() as f64), &path)
             },
-        );
-        // Of half a film nothing is kept: dropped, the encoder ends ffmpeg and the file goes.
-        if let Err(error) = &drawn
-            && !broken
-        {
-            return Err(error.clone());
+        )?;
+        writer.finish()
+    }
+}
+
+/// A film that takes one picture after the other. Dropped unfinished, ffmpeg is ended and the file is removed.
+pub(super) struct FilmWriter {
+    // Dropped in this order: ffmpeg must not write any more when its file is removed.
+    encoder: Encoder,
+    file: PartialFile,
+    frames: u64,
+}
+
+impl FilmWriter {
+    /// Begins a film of pictures of this size (both sides even) and so many of them in a second.
+    pub fn begin(file: PartialFile, size: [u32; 2], rate: f64) -> Result<Self> {
+        let rate = rate.clamp(RATE_RANGE.0, RATE_RANGE.1);
+        let encoder = Encoder::start(file.partial_path(), size, rate);
+        let encoder = encoder.map_err(|error| write_error(file.path(), &error))?;
+        Ok(Self { encoder, file, frames: 0 })
+    }
+
+    /// Takes the next picture: three bytes for each pixel.
+    pub fn write(&mut self, rgb: &[u8]) -> Result<()> {
+        self.frames += 1;
+        if self.encoder.write(rgb).is_ok() {
+            return Ok(());
         }
-        // ffmpeg's own words come first: when it stops, the broken pipe is a consequence.
-        if let Err(reason) = encoder.finish() {
-            let sentence = format!("cannot be written: ffmpeg stopped with \"{reason}\"");
-            return Err(Error::new(Code::Unwritable, sentence).in_file(path.display().to_string()));
+        // ffmpeg closed its end, and its own words say why.
+        let reason = self.encoder.finish().err().unwrap_or_else(|| "no more pictures".to_owned());
+        Err(self.stopped(&reason))
+    }
+
+    /// Completes the film and gives it its name.
+    pub fn finish(mut self) -> Result<Written> {
+        if let Err(reason) = self.encoder.finish() {
+            return Err(self.stopped(&reason));
         }
-        drawn?;
+        let Self { file, frames, .. } = self;
+        let path = file.path().to_owned();
         if std::fs::metadata(file.partial_path()).is_ok_and(|film| film.len() == 0) {
             let error = Error::new(Code::Unwritable, "cannot be written: ffmpeg wrote an empty file");
             return Err(error.in_file(path.display().to_string()));
         }
         let bytes = file.finish()?;
-        Ok(Written { path, bytes, frames: frames.len() as u64 })
+        Ok(Written { path, bytes, frames })
+    }
+
+    fn stopped(&self, reason: &str) -> Error {
+        let sentence = format!("cannot be written: ffmpeg stopped with \"{reason}\"");
+        Error::new(Code::Unwritable, sentence).in_file(self.file.path().display().to_string())
     }
 }
 

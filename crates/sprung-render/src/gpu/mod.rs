@@ -1,15 +1,38 @@
 //! The same scenes drawn by a graphics card, through wgpu: natively, in WebGPU and in WebGL2.
 //!
-//! Positions go up once a frame; what can be computed from them (blending between two steps, strains and their colours,
-//! normals, coils) is computed in shaders. WebGL2 has neither storage buffers nor compute shaders, so positions are
-//! textures that vertex shaders read.
+//! Positions go up once a frame; what can be computed from them (lengths of springs and their colours, normals, coils)
+//! is computed in shaders. WebGL2 has neither storage buffers nor compute shaders, so all long lists are
+//! [tables](table): textures that vertex shaders read. Blending between two steps is the one thing done for each point
+//! on the processor: positions are copied for the upload anyway, and the card then reads one table instead of two.
+//!
+//! A picture is made in three passes: what the key light sees (the shadow map), the scene itself in linear light with
+//! four samples for each pixel, and a last one that turns linear light into the sRGB numbers that egui expects. Depth is
+//! near/z, which is evenly fine at all distances.
+
+mod data;
+mod device;
+mod frame;
+mod palette;
+mod passes;
+mod pipelines;
+mod plan;
+mod read;
+mod scenery;
+mod shaders;
+mod stage;
+mod table;
+mod target;
+mod topology;
 
 use glam::Vec3;
+
+pub use device::{Headless, headless};
+pub use stage::{Stage, Timings};
 
 /// A moment to draw: where the points are, between two steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Moment<'a> {
-    /// Positions at the step before, m.
+    /// Positions at the step before, m. If there are none, those of `now` are taken as they are.
     pub before: &'a [Vec3],
     /// Positions at the newest step, m.
     pub now: &'a [Vec3],
@@ -23,7 +46,7 @@ pub struct Moment<'a> {
     pub ghost: &'a [Vec3],
 }
 
-/// What is pointed out.
+/// What is pointed out. Indices that the model does not have are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {
     /// Points with a ring of the selection's colour.

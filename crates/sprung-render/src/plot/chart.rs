@@ -4,6 +4,7 @@ use glam::Vec2;
 
 use super::sheet::Sheet;
 use crate::colour::{INK, INK_SOFT};
+use crate::export::write_png;
 use crate::text::{Anchor, number};
 
 /// Space for the title, the numbers of both axes and the legend, in the sheet's units.
@@ -14,56 +15,91 @@ const RIGHT: f32 = 206.0;
 const GRID: u32 = 0xe3_e7_eb;
 const AXIS: u32 = 0x9a_a4_ae;
 
-/// A curve: its name, how it is drawn, and its points (time in s, energy in J).
+/// A curve of a [`Chart`].
 #[derive(Clone, Debug)]
 pub struct Curve {
-    pub name: &'static str,
+    /// What the legend calls it; `k_s` and `k_{c,d}` have subscripts.
+    pub name: String,
+    /// sRGB.
     pub colour: u32,
+    /// Width of the line, in the sheet's units.
     pub width: f32,
+    /// Lengths of dashes and gaps in turn; none for a solid line.
     pub dash: &'static [f32],
+    /// Its points in order, in the units of the axes. What is not finite leaves a gap.
     pub points: Vec<(f64, f64)>,
 }
 
-/// A chart to be drawn.
+/// Curves over axes with round numbers, and a legend with the value at each curve's end.
 #[derive(Clone, Debug)]
 pub struct Chart {
+    /// The line above it.
     pub title: String,
+    /// What runs to the right, with its unit: `time (s)`.
+    pub across: String,
+    /// What runs upwards, without its unit.
+    pub upwards: String,
+    /// The unit of that; joules get a prefix that keeps the numbers short. Empty if curves have several units.
+    pub unit: &'static str,
+    /// The curves; the first is drawn on top.
     pub curves: Vec<Curve>,
+    /// A line below the legend.
+    pub note: Option<&'static str>,
 }
 
 impl Chart {
+    /// The chart as an SVG file.
+    pub fn svg(&self, size: [u32; 2]) -> String {
+        self.draw(size).svg()
+    }
+
+    /// The chart as a PNG file, two pixels for each unit of `size`.
+    ///
+    /// # Errors
+    /// None in practice: the bytes go to memory.
+    pub fn png(&self, size: [u32; 2]) -> std::io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        write_png(&mut bytes, &self.draw(size).image(2))?;
+        Ok(bytes)
+    }
+
     /// Draws it on a sheet of its own.
-    pub fn draw(&self, size: [u32; 2]) -> Sheet {
+    pub(super) fn draw(&self, size: [u32; 2]) -> Sheet {
         let mut sheet = Sheet::new(size);
         let [width, height] = size.map(|side| side as f32);
         let low = Vec2::new(LEFT, height - BOTTOM);
         let high = Vec2::new(width - RIGHT, TOP);
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
-        let times = Axis::covering(points().map(|point| point.0), 8.0, false);
-        let energies = Axis::covering(points().map(|point| point.1).chain([0.0]), 6.0, true);
-        let (unit, factor) = unit(energies.low.abs().max(energies.high.abs()));
-        let x = |time: f64| low.x + (high.x - low.x) * times.share(time);
-        let y = |energy: f64| low.y + (high.y - low.y) * energies.share(energy);
+        let across = Axis::covering(points().map(|point| point.0), 8.0, false);
+        let upwards = Axis::covering(points().map(|point| point.1).chain([0.0]), 6.0, true);
+        let (unit, factor) = match self.unit {
+            "J" => unit(upwards.low.abs().max(upwards.high.abs())),
+            unit => (unit, 1.0),
+        };
+        let x = |value: f64| low.x + (high.x - low.x) * across.share(value);
+        let y = |value: f64| low.y + (high.y - low.y) * upwards.share(value);
 
         sheet.text(self.title.as_str(), Vec2::new(LEFT, 33.0), Anchor::Start, 19.0, INK);
-        for energy in energies.marks() {
-            let colour = if energy == 0.0 { AXIS } else { GRID };
-            sheet.line(vec![Vec2::new(low.x, y(energy)), Vec2::new(high.x, y(energy))], 1.0, &[], colour);
-            let place = Vec2::new(low.x - 9.0, y(energy) + 4.5);
-            sheet.text(number(energy * factor), place, Anchor::End, 13.0, INK_SOFT);
+        for value in upwards.marks() {
+            let colour = if value == 0.0 { AXIS } else { GRID };
+            sheet.line(vec![Vec2::new(low.x, y(value)), Vec2::new(high.x, y(value))], 1.0, &[], colour);
+            let place = Vec2::new(low.x - 9.0, y(value) + 4.5);
+            sheet.text(number(value * factor), place, Anchor::End, 13.0, INK_SOFT);
         }
-        for time in times.marks() {
-            sheet.line(vec![Vec2::new(x(time), low.y), Vec2::new(x(time), high.y)], 1.0, &[], GRID);
-            sheet.text(number(time), Vec2::new(x(time), low.y + 20.0), Anchor::Middle, 13.0, INK_SOFT);
+        for value in across.marks() {
+            sheet.line(vec![Vec2::new(x(value), low.y), Vec2::new(x(value), high.y)], 1.0, &[], GRID);
+            sheet.text(number(value), Vec2::new(x(value), low.y + 20.0), Anchor::Middle, 13.0, INK_SOFT);
         }
         sheet.line(vec![Vec2::new(low.x, high.y), low, Vec2::new(high.x, low.y)], 1.2, &[], AXIS);
-        sheet.text("time (s)", Vec2::new(0.5 * (low.x + high.x), height - 14.0), Anchor::Middle, 14.0, INK);
-        sheet.text_upwards(format!("energy ({unit})"), Vec2::new(22.0, 0.5 * (low.y + high.y)), 14.0);
+        let place = Vec2::new(0.5 * (low.x + high.x), height - 14.0);
+        sheet.text(self.across.as_str(), place, Anchor::Middle, 14.0, INK);
+        let name = &self.upwards;
+        let label = if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") };
+        sheet.text_upwards(label, Vec2::new(22.0, 0.5 * (low.y + high.y)), 14.0);
 
-        // The total is first in the list and goes on top of the others.
         for curve in self.curves.iter().rev() {
             let points = thinned(&curve.points).into_iter();
-            let points = points.map(|(time, energy)| Vec2::new(x(time), y(energy)));
+            let points = points.map(|(across, upwards)| Vec2::new(x(across), y(upwards)));
             sheet.line(points.collect(), curve.width, curve.dash, curve.colour);
         }
         self.draw_legend(&mut sheet, Vec2::new(high.x + 20.0, TOP + 6.0), unit, factor);
@@ -76,20 +112,16 @@ impl Chart {
         for curve in &self.curves {
             let ends = vec![line + Vec2::new(0.0, 4.0), line + Vec2::new(26.0, 4.0)];
             sheet.line(ends, curve.width, curve.dash, curve.colour);
-            sheet.text(curve.name, line + Vec2::new(34.0, 8.0), Anchor::Start, 13.0, INK);
-            if let Some((_, energy)) = curve.points.last() {
-                let text = format!("{} {unit} at the end", number(energy * factor));
+            sheet.text(curve.name.as_str(), line + Vec2::new(34.0, 8.0), Anchor::Start, 13.0, INK);
+            if let Some((_, value)) = curve.points.last() {
+                let text = format!("{} {unit} at the end", number(value * factor)).replace("  ", " ");
                 sheet.text(text, line + Vec2::new(34.0, 24.0), Anchor::Start, 11.0, INK_SOFT);
             }
             line.y += 43.0;
         }
-        sheet.text(
-            "* counted from the start",
-            Vec2::new(line.x, line.y + 16.0),
-            Anchor::Start,
-            11.0,
-            INK_SOFT,
-        );
+        if let Some(note) = self.note {
+            sheet.text(note, Vec2::new(line.x, line.y + 16.0), Anchor::Start, 11.0, INK_SOFT);
+        }
     }
 }
 
@@ -164,10 +196,11 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     }
     let mut kept = Vec::with_capacity(2 * STRETCHES + 2);
     for stretch in points.chunks(points.len().div_ceil(STRETCHES)) {
-        let lowest = stretch.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
-        let highest = stretch.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
-        if let (Some(a), Some(b)) = (lowest, highest) {
-            kept.extend(if a.0 <= b.0 { [a, b] } else { [b, a] });
+        let by_height = |a: &(usize, (f64, f64)), b: &(usize, (f64, f64))| a.1.1.total_cmp(&b.1.1);
+        let lowest = stretch.iter().copied().enumerate().min_by(by_height);
+        let highest = stretch.iter().copied().enumerate().max_by(by_height);
+        if let (Some((first, a)), Some((second, b))) = (lowest, highest) {
+            kept.extend(if first <= second { [a, b] } else { [b, a] });
         }
     }
     kept

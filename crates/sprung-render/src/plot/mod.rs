@@ -1,4 +1,4 @@
-//! The energy plot: where the energy is and where it went, as an `.svg` or a `.png`.
+//! Plots as `.svg` or `.png`: where the energy is and where it went, and any other curves.
 
 mod chart;
 mod sheet;
@@ -12,10 +12,10 @@ use sprung_io::files::write_error;
 use sprung_io::{PartialFile, Written};
 
 use crate::export::write_png;
-use chart::{Chart, Curve};
+pub use chart::{Chart, Curve};
 
 /// Size of the plot: pixels of a `.png` at half its scale, user units of an `.svg`.
-const SIZE: [u32; 2] = [960, 540];
+pub const SIZE: [u32; 2] = [960, 540];
 
 /// A plot whose file is begun with the run, so that a name that cannot be written is known before anything is
 /// simulated. Dropped unfinished, it leaves nothing behind.
@@ -42,7 +42,7 @@ impl EnergyPlot {
     pub fn finish(self, title: &str, samples: &[(f64, Energy)]) -> Result<Written> {
         let Self { mut file, is_vector } = self;
         let path = file.path().to_owned();
-        let sheet = Chart { title: title.to_owned(), curves: curves(samples) }.draw(SIZE);
+        let sheet = energy_chart(title, samples).draw(SIZE);
         let written = match is_vector {
             true => file.write_all(sheet.svg().as_bytes()),
             false => write_png(&mut file, &sheet.image(2)),
@@ -63,11 +63,23 @@ fn ending(path: &Path) -> Result<String> {
     Err(error.in_file(path.display().to_string()))
 }
 
+/// The ledger of a run as a chart: (time in s, energy in J) for each sample.
+pub fn energy_chart(title: &str, samples: &[(f64, Energy)]) -> Chart {
+    Chart {
+        title: title.to_owned(),
+        across: "time (s)".to_owned(),
+        upwards: "energy".to_owned(),
+        unit: "J",
+        curves: curves(samples),
+        note: Some("* counted from the start"),
+    }
+}
+
 /// The ledger's entries as curves. Potential energy has no natural zero: gravity's counts from the start.
 fn curves(samples: &[(f64, Energy)]) -> Vec<Curve> {
     let start = samples.first().map_or(0.0, |(_, energy)| energy.gravitational);
-    let curve = |name, colour, width, dash: &'static [f32], value: &dyn Fn(&Energy) -> f64| Curve {
-        name,
+    let curve = |name: &str, colour, width, dash: &'static [f32], value: &dyn Fn(&Energy) -> f64| Curve {
+        name: name.to_owned(),
         colour,
         width,
         dash,

@@ -1,0 +1,208 @@
+//! Pictures drawn by the graphics card, compared to stored ones.
+//!
+//! `SPRUNG_UPDATE_PICTURES=1 cargo test -p sprung-render --features gpu` draws the stored ones anew; look at them before
+//! committing.
+#![cfg(feature = "gpu")]
+
+mod gpu_support;
+mod scenes;
+
+use std::path::{Path, PathBuf};
+
+use sprung::{Plane, Vec3};
+use sprung_render::Image;
+use sprung_render::appearance::{Appearance, ColourBy, Points, Springs, Surfaces, Theme};
+use sprung_render::gpu::{Marks, Moment};
+
+use gpu_support::{Set, device};
+use scenes::Motion;
+
+const SIZE: [u32; 2] = [480, 300];
+
+fn read(path: &Path) -> Option<Image> {
+    let file = std::io::BufReader::new(std::fs::File::open(path).ok()?);
+    let mut reader = png::Decoder::new(file).read_info().ok()?;
+    let mut rgb = vec![0; reader.output_buffer_size()?];
+    let frame = reader.next_frame(&mut rgb).ok()?;
+    Some(Image { width: frame.width, height: frame.height, rgb })
+}
+
+/// Drivers may place the samples of a pixel differently and round differently, which moves edges by a fraction of a pixel
+/// and colours by a step or two. So pictures are compared as means over squares of 6 pixels, where a moved edge shifts a
+/// mean by some steps only, and a missing or wrong thing shifts many means by dozens.
+const SQUARE: u32 = 6;
+/// The most that a mean may differ, in steps of 255: an edge between black and white, moved by a quarter of a pixel
+/// (half the distance of samples) along a whole square, shifts it by 255/4/6 = 11.
+const TOLERANCE: f64 = 11.0;
+/// The share of squares that may differ more: where several thin lines cross a square, their shifts add up.
+const STRAY_SHARE: f64 = 0.004;
+
+fn means(image: &Image) -> Vec<[f64; 3]> {
+    let mut means = Vec::new();
+    for top in (0..image.height).step_by(SQUARE as usize) {
+        for left in (0..image.width).step_by(SQUARE as usize) {
+            let inside = (0..SQUARE).flat_map(|y| (0..SQUARE).map(move |x| (left + x, top + y)));
+            let found: Vec<[u8; 3]> = inside.filter_map(|(x, y)| image.pixel(x, y)).collect();
+            let mean = |channel: usize| {
+                found.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>() / found.len() as f64
+            };
+            means.push([mean(0), mean(1), mean(2)]);
+        }
+    }
+    means
+}
+
+fn compare(name: &str, found: &Image) {
+    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/gpu").join(format!("{name}.png"));
+    let drawn = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("gpu-{name}.png"));
+    let write = |path: &Path| {
+        let file = std::fs::File::create(path).expect("the picture can be stored");
+        sprung_render::export::write_png(std::io::BufWriter::new(file), found).expect("it can be written");
+    };
+    write(&drawn);
+    if std::env::var_os("SPRUNG_UPDATE_PICTURES").is_some() {
+        std::fs::create_dir_all(stored.parent().expect("it has a folder")).expect("the folder can be made");
+        write(&stored);
+    }
+    let fix = "draw it anew with SPRUNG_UPDATE_PICTURES=1 and look at it";
+    let Some(expected) = read(&stored) else {
+        panic!("there is no stored picture {}; {fix}", stored.display())
+    };
+    assert_eq!((found.width, found.height), (expected.width, expected.height), "size of {name}");
+    let (a, b) = (means(found), means(&expected));
+    let far = |(a, b): &(&[f64; 3], &[f64; 3])| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > TOLERANCE);
+    let stray = a.iter().zip(&b).filter(far).count() as f64 / a.len() as f64;
+    let (drawn, stored) = (drawn.display(), stored.display());
+    assert!(
+        stray <= STRAY_SHARE,
+        "{drawn} differs from {stored} in {:.1} % of its squares; {fix}",
+        100.0 * stray
+    );
+}
+
+/// Draws a scene's last moment in both themes, or in the one that is named.
+fn both(name: &str, motion: impl Fn() -> Motion, change: impl Fn(&mut Set)) {
+    for theme in Theme::ALL {
+        one(&format!("{name}-{}", theme.name()), motion(), |set| {
+            set.look.theme = theme;
+            change(set);
+        });
+    }
+}
+
+fn one(name: &str, motion: Motion, change: impl Fn(&mut Set)) {
+    let Some(headless) = device(&format!("the picture {name}")) else { return };
+    let mut set = Set::new(headless, motion, SIZE);
+    change(&mut set);
+    let by = set.look.colour_by;
+    let positions = set.positions();
+    let (model, params) = (set.motion.info.model.clone(), set.motion.info.params.clone());
+    set.look.full_scale = Appearance::full_scale_for(&model, &params, &positions, by);
+    compare(name, &set.draw());
+}
+
+#[test]
+fn spring() {
+    both("spring", || scenes::spring(5), |_| {});
+}
+
+#[test]
+fn chain() {
+    both("chain", || scenes::chain(5), |_| {});
+}
+
+#[test]
+fn jelly() {
+    both("jelly", || scenes::jelly(10, 5), |_| {});
+}
+
+#[test]
+fn cloth() {
+    both("cloth", || scenes::cloth(20, 5), |_| {});
+}
+
+#[test]
+fn large_models_show_their_surfaces() {
+    both("cloth-large", || scenes::cloth(110, 3), |set| set.look.colour_by = ColourBy::Plain);
+    both("jelly-large", || scenes::jelly(22, 3), |set| set.look.colour_by = ColourBy::Plain);
+}
+
+#[test]
+fn colours_mean_what_was_chosen() {
+    both(
+        "cloth-strain",
+        || scenes::cloth(20, 5),
+        |set| {
+            set.look.colour_by = ColourBy::Strain;
+            set.look.points = Points::Hidden;
+            set.look.springs = Springs::Hidden;
+        },
+    );
+    both("cloth-energy", || scenes::cloth(20, 5), |set| set.look.colour_by = ColourBy::Energy);
+    one("jelly-skin-tension", scenes::jelly(22, 3), |_| {});
+}
+
+#[test]
+fn surfaces_can_show_their_edges() {
+    both(
+        "jelly-wireframe",
+        || scenes::jelly(10, 5),
+        |set| {
+            set.look.surfaces = Surfaces::Wireframe;
+            set.look.points = Points::Hidden;
+            set.look.springs = Springs::Hidden;
+            set.look.colour_by = ColourBy::Plain;
+        },
+    );
+}
+
+#[test]
+fn everything_can_be_pointed_out() {
+    for theme in Theme::ALL {
+        let name = format!("marks-{}", theme.name());
+        let Some(headless) = device(&format!("the picture {name}")) else { return };
+        let mut set = Set::new(headless, scenes::cloth(12, 5), SIZE);
+        set.look.theme = theme;
+        let positions = set.positions();
+        let ghost = set.motion.moments[2].positions.clone();
+        let velocities: Vec<Vec3> =
+            positions.iter().map(|place| Vec3::new(0.1 * place.z, 1.0, 2.0)).collect();
+        let forces: Vec<Vec3> = positions.iter().map(|place| Vec3::new(0.0, -4.0, 0.1 * place.x)).collect();
+        (set.look.velocity_arrows, set.look.force_arrows) = (1.0, 0.6);
+        let moment = Moment {
+            now: &positions,
+            velocities: &velocities,
+            forces: &forces,
+            ghost: &ghost,
+            ..Default::default()
+        };
+        let marks = Marks {
+            selected_points: vec![130, 118],
+            selected_springs: vec![400, 401],
+            hovered_point: Some(66),
+            hovered_spring: Some(300),
+            alarming_springs: vec![120, 121],
+            alarming_points: vec![100],
+            pulls: vec![(positions[143], positions[143] + Vec3::new(6.0, 5.0, 0.0))],
+        };
+        compare(&name, &set.draw_moment(&moment, &marks));
+    }
+}
+
+#[test]
+fn planes_may_lean_and_cross() {
+    both(
+        "planes",
+        || scenes::jelly(6, 5),
+        |set| {
+            let lean = Vec3::new(0.5, 1.0, 0.0).normalize();
+            set.motion.info.params.planes.push(Plane {
+                normal: lean,
+                point: Vec3::new(-14.0, -10.0, 0.0),
+                ..Plane::level(0.0, 50.0, 10.0)
+            });
+            let params = set.motion.info.params.clone();
+            set.stage.set_params(&params);
+        },
+    );
+}
