@@ -206,6 +206,10 @@ pub enum Probe {
     Strain(usize),
     /// A spring's k_s(ℓ − L), N.
     Tension(usize),
+    /// A spring's ½k_s(ℓ − L)², J.
+    Energy(usize),
+    /// A component of all forces together on a point, N.
+    Force(usize, usize),
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use sprung::{Change, Energy, Params, Result, Simulation, SpringReading};
+use sprung::{Change, Energy, Params, PointReading, Result, Simulation, SpringReading};
 
 use crate::command::Probe;
 use crate::ghost::Ghost;
@@ -240,6 +240,11 @@ impl Run {
             Probe::Length(index) => Some(spring(index)?.length),
             Probe::Strain(index) => spring(index)?.strain,
             Probe::Tension(index) => Some(spring(index)?.spring_force),
+            Probe::Energy(index) => Some(spring(index)?.energy),
+            Probe::Force(point, axis) => {
+                let reading = PointReading::of(self.simulation.model(), params, state, point)?;
+                reading.total_force.to_array().get(axis).copied()
+            }
         }
     }
 
