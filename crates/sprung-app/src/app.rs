@@ -1,53 +1,86 @@
 //! The window: its parts and where they lie.
 
-use sprung::scene::Scene;
-use sprung_driver::{Command, Handle, Source};
+use sprung_driver::{Command, Handle};
 use sprung_render::appearance::Theme;
 use sprung_render::camera::Bounds;
 use sprung_render::turntable::Turntable;
 
 use crate::action::{self, Action};
-use crate::state::{AppState, Shown, Tool};
+use crate::files::{Files, Origin};
+use crate::settings::Settings;
+use crate::state::{AppState, Tool};
 use crate::view::View;
 use crate::{card, explain, panel, plots, theme, timeline};
+
+/// Width of the panel when the window opens first, points.
+const PANEL_WIDTH: f32 = 360.0;
+
+/// Width that its rows need, points.
+const LEAST_PANEL_WIDTH: f32 = 336.0;
 
 /// The window.
 pub struct App {
     state: AppState,
+    timeline: timeline::TimelineBar,
+    controls: panel::Controls,
     view: View,
     plots: plots::Plots,
     explain: explain::Explain,
     cards: card::Cards,
     /// The scene that the camera was set up for.
     serial: Option<u64>,
+    /// How much larger everything is, to be kept.
+    zoom: f32,
 }
 
 impl App {
-    /// A window on a driver.
+    /// A window on a driver, looking as it did the last time.
     pub fn new(mut driver: Handle, context: &eframe::CreationContext<'_>) -> Self {
+        theme::install(&context.egui_ctx);
+        let settings = Settings::load(context.storage);
+        context.egui_ctx.set_zoom_factor(settings.zoom());
         let report = driver.report();
         driver.send(Command::Play(true));
         let camera = Turntable::framing(&Bounds::default(), 1.0);
-        let shown = Shown { controls: true, plots: false, explain: false, help: false, presentation: false };
+        let origin = Origin::of(&report.opened.name, &report.opened.scene);
         let state = AppState {
             driver,
             report,
-            appearance: Default::default(),
+            appearance: settings.appearance(),
             camera,
             tool: Tool::Hand,
             selection: None,
             hovered: None,
             pointed_out: Vec::new(),
-            shown,
+            shown: settings.shown(),
+            overlays: Default::default(),
+            picture_size: Default::default(),
+            film_rate: 30,
+            film_clock: Default::default(),
+            pixels_per_point: 1.0,
+            save_requests: Vec::new(),
+            film_name: None,
+            film_path: None,
+            complaints: Vec::new(),
+            plot: Default::default(),
+            explain_stage: None,
             actions: Vec::new(),
+            files: Files::new(origin),
+            refused: None,
+            notice: None,
+            hint: !settings.hint_taken,
+            compares: false,
         };
         Self {
             state,
+            timeline: Default::default(),
+            controls: Default::default(),
             view: View::new(context.wgpu_render_state.as_ref()),
             plots: Default::default(),
             explain: Default::default(),
             cards: Default::default(),
             serial: None,
+            zoom: settings.zoom(),
         }
     }
 
@@ -65,24 +98,28 @@ impl App {
         let state = &mut self.state;
         theme::apply(ui.ctx(), state.appearance.theme);
         if !state.shown.presentation {
-            egui::Panel::top("transport").show(ui, |ui| panel::transport(ui, state));
+            egui::Panel::top("bar").show(ui, |ui| panel::bar(ui, state));
+            egui::Panel::bottom("timeline").show(ui, |ui| self.timeline.show(ui, state));
             if state.shown.controls {
-                egui::Panel::left("controls").show(ui, |ui| panel::controls(ui, state));
+                // The scene keeps at least two fifths of the window.
+                let most = 0.6 * ui.available_width();
+                let panel = egui::Panel::left("controls").default_size(PANEL_WIDTH.min(most));
+                let panel = panel.size_range(LEAST_PANEL_WIDTH.min(most)..=most);
+                panel.show(ui, |ui| self.controls.show(ui, state));
             }
             if state.shown.explain {
-                egui::Panel::right("explain").show(ui, |ui| self.explain.show(ui, state));
+                explain::panel(ui).show(ui, |ui| self.explain.show(ui, state));
             }
-            egui::Panel::bottom("timeline").show(ui, |ui| timeline::show(ui, state));
             if state.shown.plots {
-                egui::Panel::bottom("plots").show(ui, |ui| self.plots.show(ui, state));
+                plots::panel(ui).show(ui, |ui| self.plots.show(ui, state));
             }
         }
-        egui::CentralPanel::no_frame().show(ui, |ui| self.view.show(ui, state));
-        self.cards.show(ui.ctx(), state);
+        let scene = egui::CentralPanel::no_frame().show(ui, |ui| self.view.show(ui, state)).response.rect;
+        self.cards.show(ui.ctx(), state, scene);
     }
 
     /// Does what keys and buttons asked for.
-    fn act(&mut self, action: Action) {
+    fn act(&mut self, context: &egui::Context, action: Action) {
         let state = &mut self.state;
         match action {
             Action::PlayPause => state.send(Command::Play(!state.report.playing)),
@@ -91,6 +128,8 @@ impl App {
             Action::Reset => state.send(Command::Reset),
             Action::Back => timeline::go(state, -1),
             Action::Forward => timeline::go(state, 1),
+            Action::Start => timeline::go_to_start(state),
+            Action::End => timeline::go_to_end(state),
             Action::Undo => state.send(Command::Undo),
             Action::Redo => state.send(Command::Redo),
             Action::ResetView => self.view.frame_scene(state),
@@ -100,6 +139,7 @@ impl App {
             Action::Panel => state.shown.controls ^= true,
             Action::Plots => state.shown.plots ^= true,
             Action::Explain => state.shown.explain ^= true,
+            Action::NextStage => self.explain.next_stage(state),
             Action::Help => state.shown.help ^= true,
             Action::Presentation => state.shown.presentation ^= true,
             Action::Theme => {
@@ -108,13 +148,29 @@ impl App {
             }
             Action::Open | Action::Save => self.cards.file(action, state),
             Action::Picture | Action::Record => self.view.save(action, state),
+            Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Scene(number) => {
-                let name = ["spring", "chain", "jelly", "cloth"][number.min(3)];
-                if let Ok(scene) = Scene::builtin(name) {
-                    state.send(Command::Open(Box::new(Source { name: name.to_owned(), scene })));
-                }
+                let name = panel::scenes::entries().get(number).map(|entry| entry.name);
+                name.into_iter().for_each(|name| state.open_builtin(name));
             }
         }
+    }
+
+    /// A new scene has been opened: looks at it.
+    fn follow(&mut self, context: &egui::Context) {
+        let opened = self.state.report.opened.clone();
+        if self.serial == Some(opened.serial) {
+            return;
+        }
+        if self.serial.is_some() {
+            self.state.files.opened();
+            self.state.send(Command::Play(true));
+        }
+        self.serial = Some(opened.serial);
+        self.state.selection = None;
+        self.state.pointed_out.clear();
+        self.view.frame_scene(&mut self.state);
+        context.send_viewport_cmd(egui::ViewportCommand::Title(format!("{} – sprung", opened.name)));
     }
 }
 
@@ -123,17 +179,20 @@ impl eframe::App for App {
         let seconds = ui.input(|input| input.unstable_dt.min(0.25));
         self.state.driver.pass(f64::from(seconds));
         self.state.report = self.state.driver.report();
-        if self.serial != Some(self.state.report.opened.serial) {
-            self.serial = Some(self.state.report.opened.serial);
-            self.state.selection = None;
-            self.view.frame_scene(&mut self.state);
-        }
+        self.follow(ui.ctx());
+        self.zoom = ui.ctx().zoom_factor();
+        self.state.pixels_per_point = ui.ctx().pixels_per_point();
+        self.explain.keep_up(&mut self.state);
         self.show(ui);
         let mut actions = std::mem::take(&mut self.state.actions);
         actions.extend(action::pressed(ui.ctx()));
-        actions.into_iter().for_each(|action| self.act(action));
+        actions.into_iter().for_each(|action| self.act(ui.ctx(), action));
         if self.state.report.playing {
             ui.ctx().request_repaint();
         }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        Settings::of(&self.state, self.zoom).save(storage);
     }
 }

@@ -1,1 +1,238 @@
 //! The one door to files: dialogs, reading, writing. In a browser it becomes a picker and downloads.
+
+use std::future::Future;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll, Wake, Waker};
+
+use serde::{Deserialize, Serialize};
+use sprung::scene::{BUILTIN, MAX_BYTES, Scene};
+use sprung::{Error, Result};
+use sprung_driver::{Report, Source};
+use sprung_io::files::PartialFile;
+
+/// The ending of scene files.
+pub const ENDING: &str = "toml";
+
+/// Where a scene came from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Origin {
+    /// It comes with the program, under this name.
+    Builtin(String),
+    /// A file.
+    File(PathBuf),
+    /// Neither: handed in by the caller, or dropped where files have no path.
+    Other(String),
+}
+
+impl Origin {
+    /// Of a scene that was handed in under this name.
+    pub fn of(name: &str, scene: &Scene) -> Self {
+        let is_builtin = BUILTIN.iter().any(|builtin| builtin.name == name)
+            && Scene::builtin(name).is_ok_and(|builtin| builtin == *scene);
+        if is_builtin { Self::Builtin(name.to_owned()) } else { Self::Other(name.to_owned()) }
+    }
+
+    /// The scene that lies there.
+    ///
+    /// # Errors
+    /// If there is none any more, or it cannot be read.
+    pub fn read(&self) -> Result<Source> {
+        match self {
+            Self::Builtin(name) | Self::Other(name) => {
+                Ok(Source { name: name.clone(), scene: Scene::builtin(name)? })
+            }
+            Self::File(path) => read_scene(path).map_err(|refused| refused.error),
+        }
+    }
+}
+
+/// What the window knows of files.
+#[derive(Debug)]
+pub struct Files {
+    /// Where the open scene came from.
+    pub origin: Origin,
+    /// Where the scene that was asked for lies; it becomes `origin` when it is open.
+    asked: Option<Origin>,
+    /// The text of the scene that was refused last, so that its error can show the line.
+    pub refused_text: Option<String>,
+}
+
+impl Files {
+    /// Beginning with a scene from there.
+    pub fn new(origin: Origin) -> Self {
+        Self { origin, asked: None, refused_text: None }
+    }
+
+    /// A scene from there has been asked for.
+    pub fn ask(&mut self, origin: Origin) {
+        self.asked = Some(origin);
+    }
+
+    /// The scene that was asked for is open.
+    pub fn opened(&mut self) {
+        if let Some(origin) = self.asked.take() {
+            self.origin = origin;
+        }
+    }
+
+    /// A path to save the open scene to: its own file, or a name for one that is not there yet.
+    pub fn path_to_save(&self) -> PathBuf {
+        match &self.origin {
+            Origin::File(path) => path.clone(),
+            Origin::Builtin(name) | Origin::Other(name) => PathBuf::from(format!("my-{name}.{ENDING}")),
+        }
+    }
+}
+
+/// A scene that cannot be opened: why, and its text if there is any.
+#[derive(Debug)]
+pub struct Refused {
+    /// Why.
+    pub error: Error,
+    /// What the file says.
+    pub text: Option<String>,
+}
+
+/// Reads a scene file.
+///
+/// # Errors
+/// With the file's line and field where its text is at fault.
+pub fn read_scene(path: &Path) -> Result<Source, Refused> {
+    // Small as scene files are (most have less than 2 KiB), reading one does not hold up the window.
+    let bytes = sprung_io::files::read(path, MAX_BYTES).map_err(|error| Refused { error, text: None })?;
+    parse_scene(&bytes, &path.display().to_string())
+}
+
+/// A scene from the bytes of a file of this name.
+///
+/// # Errors
+/// With line and field.
+pub fn parse_scene(bytes: &[u8], file: &str) -> Result<Source, Refused> {
+    let name = Path::new(file).file_stem().map_or_else(|| file.into(), |stem| stem.to_string_lossy());
+    match Scene::from_bytes(bytes, file) {
+        Ok(scene) => Ok(Source { name: name.into_owned(), scene }),
+        Err(error) => Err(Refused { error, text: String::from_utf8(bytes.to_vec()).ok() }),
+    }
+}
+
+/// The open scene with all parameters as they are now, as the text of a scene file that `sprung run` takes.
+///
+/// # Errors
+/// Where a scene file has no way to say it.
+pub fn scene_text(report: &Report) -> Result<String> {
+    let scene = report.opened.scene.with_params(&report.opened.model, &report.params)?;
+    Ok(scene.to_toml())
+}
+
+/// Writes a file: beside its place, and renamed when whole.
+///
+/// # Errors
+/// [`Code::Unwritable`](sprung::Code::Unwritable), naming the file; what was there before is left as it was.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<u64> {
+    let mut file = PartialFile::create(path)?;
+    file.write_all(bytes).map_err(|error| sprung_io::files::write_error(path, &error))?;
+    file.finish()
+}
+
+/// What is chosen in a dialog, and for what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted<'a> {
+    /// The dialog's title.
+    pub title: &'a str,
+    /// What such files are called: `"scenes"`.
+    pub kind: &'a str,
+    /// Their endings.
+    pub endings: &'a [&'a str],
+    /// The name for a file to save; `None`: a file to open.
+    pub save_as: Option<&'a str>,
+}
+
+/// A dialog of the system that is open. It never holds the window up: ask it each frame.
+///
+/// Where the system has none, it says at once that nothing was chosen; so paths can always be typed as well.
+pub struct Dialog(Pin<Box<dyn Future<Output = Option<PathBuf>>>>);
+
+impl Dialog {
+    /// Opens one.
+    pub fn open(wanted: &Wanted<'_>) -> Self {
+        let dialog =
+            rfd::AsyncFileDialog::new().set_title(wanted.title).add_filter(wanted.kind, wanted.endings);
+        let Some(name) = wanted.save_as else {
+            let picked = dialog.pick_file();
+            return Self(Box::pin(async { picked.await.map(|file| file.path().to_owned()) }));
+        };
+        let picked = dialog.set_file_name(name).save_file();
+        Self(Box::pin(async { picked.await.map(|file| file.path().to_owned()) }))
+    }
+
+    /// What has been chosen: `None` as long as it is open, `Some(None)` if it was closed without.
+    pub fn poll(&mut self, context: &egui::Context) -> Option<Option<PathBuf>> {
+        let waker = Waker::from(Arc::new(Repaint(context.clone())));
+        match self.0.as_mut().poll(&mut Context::from_waker(&waker)) {
+            Poll::Ready(chosen) => Some(chosen),
+            Poll::Pending => None,
+        }
+    }
+}
+
+/// Wakes the window when the dialog has something to say.
+struct Repaint(egui::Context);
+
+impl Wake for Repaint {
+    fn wake(self: Arc<Self>) {
+        self.0.request_repaint();
+    }
+}
+
+/// The scene in the first of the files that were dropped onto the window, if any were.
+pub fn dropped(context: &egui::Context) -> Option<Result<(Source, Origin), Refused>> {
+    let file = context.input(|input| input.raw.dropped_files.first().cloned())?;
+    let path = file.path().to_owned();
+    let name = path.display().to_string();
+    // On the desktop a dropped file has a path, and so a limit to what is read of it; else it comes as bytes.
+    if path.is_absolute() {
+        return Some(read_scene(&path).map(|source| (source, Origin::File(path))));
+    }
+    let source = match file.bytes() {
+        Ok(bytes) => parse_scene(&bytes, &name),
+        Err(reason) => {
+            let error = Error::new(sprung::Code::Unreadable, format!("cannot be read: {reason}"));
+            Err(Refused { error: error.in_file(name), text: None })
+        }
+    };
+    Some(source.map(|source| {
+        let origin = Origin::Other(source.name.clone());
+        (source, origin)
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_is_named_after_its_file() {
+        let text = "[[body]]\nname = \"a\"\npoints = [[0, 0, 0]]\n";
+        let source = parse_scene(text.as_bytes(), "some/where/two.words.toml").expect("it is a scene");
+        assert_eq!(source.name, "two.words");
+    }
+
+    #[test]
+    fn a_bad_scene_keeps_its_text_for_the_error() {
+        let refused = parse_scene(b"dt = -1\n", "x.toml").expect_err("dt is negative");
+        assert_eq!(refused.text.as_deref(), Some("dt = -1\n"));
+        assert_eq!(refused.error.place().line_column.map(|(line, _)| line), Some(1));
+        assert!(parse_scene(&[0xff, 0xfe], "x.toml").expect_err("it is no text").text.is_none());
+    }
+
+    #[test]
+    fn a_built_in_scene_that_was_changed_is_no_longer_it() {
+        let mut scene = Scene::builtin("chain").expect("it is built in");
+        assert_eq!(Origin::of("chain", &scene), Origin::Builtin("chain".to_owned()));
+        scene.substeps += 1;
+        assert_eq!(Origin::of("chain", &scene), Origin::Other("chain".to_owned()));
+    }
+}

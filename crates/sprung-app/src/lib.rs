@@ -7,11 +7,12 @@
 mod action;
 mod app;
 mod card;
-mod explain;
+pub mod explain;
 pub mod files;
+mod icon;
 mod native;
 mod panel;
-mod plots;
+pub mod plots;
 mod settings;
 mod state;
 mod theme;
@@ -20,6 +21,8 @@ mod view;
 
 pub use action::{ACTIONS, Action, ActionInfo};
 pub use app::App;
+pub use card::GESTURES;
 pub use native::{Options, run};
+pub use panel::PLANETS;
 pub use sprung_driver::Source;
-pub use state::{AppState, Pick, Tool};
+pub use state::{AppState, FilmClock, Overlays, Pick, PictureSize, SaveRequest, Shown, Tool};

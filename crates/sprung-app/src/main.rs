@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+#[expect(clippy::print_stderr, reason = "the program says why it ends")]
 fn main() -> ExitCode {
     sprung_app::run(sprung_app::Options::default()).map_or_else(
         |error| {

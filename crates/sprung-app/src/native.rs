@@ -1,10 +1,27 @@
 //! The door to a window of the operating system.
 
+use std::sync::Arc;
+
+use egui::{IconData, ViewportBuilder};
 use sprung::scene::Scene;
 use sprung::{Code, Error, Result};
 use sprung_driver::{Driver, Handle, Source};
 
 use crate::app::App;
+use crate::files::Origin;
+use crate::settings::Settings;
+
+/// What the system knows the window by: for its settings, its icon and its taskbar.
+const APP_ID: &str = "sprung";
+
+/// The scene at the very first start.
+const FIRST_SCENE: &str = "jelly";
+
+/// The window's size when it opens first, points.
+const SIZE: [f32; 2] = [1280.0, 820.0];
+
+/// The least it can be made, points.
+const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
 
 /// What the window begins with.
 #[derive(Clone, Debug, Default)]
@@ -16,14 +33,159 @@ pub struct Options {
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// [`Code::Unsupported`] if there is no display or no graphics driver.
+/// [`Code::Unsupported`] if there is no display or no graphics driver; what building the scene says, if it cannot be.
 pub fn run(options: Options) -> Result<()> {
-    let source = match options.source {
-        Some(source) => source,
-        None => Source { name: "jelly".to_owned(), scene: Scene::builtin("jelly")? },
+    let viewport = ViewportBuilder::default()
+        .with_app_id(APP_ID)
+        .with_title("sprung")
+        .with_icon(Arc::new(icon(64)))
+        .with_inner_size(SIZE)
+        .with_min_inner_size(LEAST_SIZE);
+    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
+    let create = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+        Ok(Box::new(create(options, context)?))
     };
-    let driver = Handle::inline(Driver::new(source)?);
-    let native = eframe::NativeOptions { renderer: eframe::Renderer::Wgpu, ..Default::default() };
-    eframe::run_native("sprung", native, Box::new(|context| Ok(Box::new(App::new(driver, context)))))
-        .map_err(|error| Error::new(Code::Unsupported, format!("cannot open a window: {error}")))
+    eframe::run_native(APP_ID, native, Box::new(create)).map_err(explain)
+}
+
+fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App> {
+    let settings = Settings::load(context.storage);
+    let (source, origin, refused) = first_source(options.source, &settings)?;
+    let repaint = context.egui_ctx.clone();
+    let driver = Handle::thread(Driver::new(source)?, Box::new(move || repaint.request_repaint()))?;
+    let mut app = App::new(driver, context);
+    app.state_mut().files.origin = origin;
+    app.state_mut().refused = refused;
+    Ok(app)
+}
+
+/// The scene to begin with; and why it is not the last one, where that is gone.
+fn first_source(given: Option<Source>, settings: &Settings) -> Result<(Source, Origin, Option<Error>)> {
+    if let Some(source) = given {
+        let origin = Origin::of(&source.name, &source.scene);
+        return Ok((source, origin, None));
+    }
+    let mut refused = None;
+    if let Some(origin) = &settings.scene {
+        match origin.read() {
+            Ok(source) => return Ok((source, origin.clone(), None)),
+            Err(error) => refused = Some(error),
+        }
+    }
+    let source = Source { name: FIRST_SCENE.to_owned(), scene: Scene::builtin(FIRST_SCENE)? };
+    Ok((source, Origin::Builtin(FIRST_SCENE.to_owned()), refused))
+}
+
+/// One line that says what is missing and what to do.
+fn explain(error: eframe::Error) -> Error {
+    if let eframe::Error::AppCreation(inner) = error {
+        return match inner.downcast::<Error>() {
+            Ok(error) => *error,
+            Err(inner) => unsupported(&inner.to_string()),
+        };
+    }
+    unsupported(&error.to_string())
+}
+
+fn unsupported(reason: &str) -> Error {
+    let has = |words: &[&str]| words.iter().any(|word| reason.contains(word));
+    if has(&["WAYLAND_DISPLAY", "DISPLAY", "XOpenDisplay", "open connection to X"]) {
+        return Error::new(Code::Unsupported, "there is no display to open a window on")
+            .with_fix("start it in a desktop session, or use `sprung run`, which needs none");
+    }
+    if has(&["libX", "libxkb", "libwayland", "libxcb", ".so"]) {
+        return Error::new(
+            Code::Unsupported,
+            format!("a library for windows is missing: {}", one_line(reason)),
+        )
+        .with_fix("install libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libwayland-client0");
+    }
+    if has(&["adapter", "Adapter", "surface", "Surface", "device", "Device", "backend"]) {
+        return Error::new(Code::Unsupported, "there is no graphics driver that can draw the window")
+            .with_fix(
+                "install mesa-vulkan-drivers or the driver of your graphics card, or use `sprung run`",
+            );
+    }
+    Error::new(Code::Unsupported, format!("cannot open a window: {}", one_line(reason)))
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// A mass on a coil, drawn here so that no binary file has to be kept.
+fn icon(size: u32) -> IconData {
+    let mut rgba = Vec::with_capacity(4 * (size * size) as usize);
+    for y in 0..size {
+        for x in 0..size {
+            // From −1 to 1, y upwards.
+            let to = |pixel: u32| 2.0 * (pixel as f32 + 0.5) / size as f32 - 1.0;
+            rgba.extend(icon_pixel(to(x), -to(y)));
+        }
+    }
+    IconData { rgba, width: size, height: size }
+}
+
+fn icon_pixel(x: f32, y: f32) -> [u8; 4] {
+    let ball = (x * x + (y + 0.5) * (y + 0.5)).sqrt();
+    if ball < 0.4 {
+        // Lit from the upper left.
+        let light = 1.0 - 0.8 * ((x + 0.15).powi(2) + (y + 0.35).powi(2)).sqrt();
+        return [(230.0 * light) as u8, (90.0 * light) as u8, (60.0 * light) as u8, 255];
+    }
+    // Four windings between the ceiling and the ball.
+    let winding = 0.32 * (y * 22.0).sin();
+    if (-0.15..0.85).contains(&y) && (x - winding).abs() < 0.16 {
+        return [70, 110, 170, 255];
+    }
+    if (0.85..1.0).contains(&y) && x.abs() < 0.7 { [90, 95, 105, 255] } else { [0, 0, 0, 0] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_said_in_one_line() {
+        for (reason, words) in [
+            (
+                "winit EventLoopError: os error at x.rs:1: neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.",
+                "no display",
+            ),
+            ("WGPU error: Failed to create wgpu adapter, no suitable adapter found.", "no graphics driver"),
+            ("WGPU error: No suitable graphics adapter found;\n\nvulkan not found", "no graphics driver"),
+            ("WGPU error: There was no valid format for the surface at all.", "no graphics driver"),
+            ("winit error: libxkbcommon-x11.so could not be loaded", "a library for windows is missing"),
+            ("os error: Failed to open connection to X server", "no display"),
+            ("something\nelse", "cannot open a window: something else"),
+        ] {
+            let error = unsupported(reason);
+            let text = error.to_string();
+            assert_eq!(error.code(), Code::Unsupported);
+            assert!(text.contains(words) && !text.contains('\n'), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_error_of_ours_comes_through_as_it_is() {
+        let ours = Error::new(Code::TooLarge, "is too large");
+        assert_eq!(explain(eframe::Error::AppCreation(Box::new(ours.clone()))), ours);
+    }
+
+    #[test]
+    fn a_scene_that_is_gone_is_said_and_the_jelly_opens() {
+        let settings =
+            Settings { scene: Some(Origin::File("nowhere/at all.toml".into())), ..Settings::default() };
+        let (source, origin, refused) = first_source(None, &settings).expect("the jelly is built in");
+        assert_eq!((source.name.as_str(), origin), ("jelly", Origin::Builtin("jelly".to_owned())));
+        assert_eq!(refused.map(|error| error.code()), Some(Code::Unreadable));
+    }
+
+    #[test]
+    fn the_icon_is_a_picture() {
+        let icon = icon(64);
+        assert_eq!(icon.rgba.len(), 64 * 64 * 4);
+        let opaque = icon.rgba.chunks(4).filter(|pixel| pixel[3] == 255).count();
+        assert!((400..3500).contains(&opaque), "{opaque}");
+    }
 }

@@ -2,11 +2,16 @@
 
 use std::sync::Arc;
 
-use sprung_driver::{Command, Edit, Handle, Report};
+use sprung::Error;
+use sprung::scene::Scene;
+use sprung_driver::{Command, Edit, Handle, Report, Source};
 use sprung_render::appearance::Appearance;
 use sprung_render::turntable::Turntable;
 
 use crate::action::Action;
+use crate::explain::Stage;
+use crate::files::{Files, Origin, Refused};
+use crate::plots::PlotKind;
 
 /// A point or a spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +30,73 @@ pub enum Tool {
     Hand,
     /// Parts springs.
     Scissors,
+}
+
+/// Bytes that wait to be saved; the files' door asks where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SaveRequest {
+    /// The file name to suggest, with its ending.
+    pub name: String,
+    /// What the file is to hold.
+    pub bytes: Vec<u8>,
+}
+
+/// How large pictures and films of what is seen are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureSize {
+    /// As large as the view.
+    #[default]
+    Window,
+    /// Twice as wide and as high.
+    Twice,
+    /// 1920 by 1080 pixels.
+    FullHd,
+}
+
+impl PictureSize {
+    /// All of them, for menus.
+    pub const ALL: [Self; 3] = [Self::Window, Self::Twice, Self::FullHd];
+
+    /// Its name in a menu.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Window => "as in the window",
+            Self::Twice => "twice as wide and high",
+            Self::FullHd => "1920 \u{d7} 1080",
+        }
+    }
+}
+
+/// Which time a film follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FilmClock {
+    /// The simulation's: smooth at its own speed, however slowly it ran. Pauses are left out.
+    #[default]
+    Simulated,
+    /// The clock on the wall: what was seen, pauses and all.
+    Real,
+}
+
+impl FilmClock {
+    /// All of them, for menus.
+    pub const ALL: [Self; 2] = [Self::Simulated, Self::Real];
+
+    /// Its name in a menu.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Simulated => "at the simulation's own time",
+            Self::Real => "as it was seen",
+        }
+    }
+}
+
+/// What may be written over the scene beyond the usual.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Overlays {
+    /// The numbers of points, where there are few.
+    pub labels: bool,
+    /// How long a step, the upload and the drawing take.
+    pub times: bool,
 }
 
 /// Which parts of the window are shown.
@@ -62,8 +134,40 @@ pub struct AppState {
     pub pointed_out: Vec<Pick>,
     /// Which parts are shown.
     pub shown: Shown,
+    /// What is written over the scene.
+    pub overlays: Overlays,
+    /// How large pictures and films are.
+    pub picture_size: PictureSize,
+    /// Pictures in a second of a film.
+    pub film_rate: u32,
+    /// Which time a film follows.
+    pub film_clock: FilmClock,
+    /// Pixels for each of the window's points.
+    pub pixels_per_point: f32,
+    /// Files to be saved, until somebody asks where.
+    pub save_requests: Vec<SaveRequest>,
+    /// A film was recorded and is to be saved: the file name to suggest, until somebody asks where.
+    pub film_name: Option<String>,
+    /// Where the recorded film is to go; its ending, `.gif` or `.mp4`, says as what.
+    pub film_path: Option<std::path::PathBuf>,
+    /// What could not be done, until it is read.
+    pub complaints: Vec<sprung::Error>,
+    /// Which plot is shown.
+    pub plot: PlotKind,
+    /// The stage of the step that is being explained; the view draws its arrows at the selection.
+    pub explain_stage: Option<Stage>,
     /// Asked for by a key or a button; done at the end of the frame.
     pub actions: Vec<Action>,
+    /// Where the scene came from.
+    pub files: Files,
+    /// What this window could not do, until it is read. The driver has its own in the report.
+    pub refused: Option<Error>,
+    /// A word that is shown for a moment, such as "saved chain.toml".
+    pub notice: Option<String>,
+    /// Whether the hint of the first start is still to be shown.
+    pub hint: bool,
+    /// Whether the ghost of an earlier run is wanted.
+    pub compares: bool,
 }
 
 impl AppState {
@@ -80,5 +184,44 @@ impl AppState {
     /// Asks for an action, as its key would.
     pub fn act(&mut self, action: Action) {
         self.actions.push(action);
+    }
+
+    /// Opens a scene from there.
+    pub fn open(&mut self, source: Source, origin: Origin) {
+        self.files.ask(origin);
+        self.send(Command::Open(Box::new(source)));
+    }
+
+    /// Opens a built-in scene.
+    pub fn open_builtin(&mut self, name: &str) {
+        match Scene::builtin(name) {
+            Ok(scene) => {
+                let source = Source { name: name.to_owned(), scene };
+                self.open(source, Origin::Builtin(name.to_owned()));
+            }
+            Err(error) => self.refuse(error),
+        }
+    }
+
+    /// Opens what was read, or says why it cannot be.
+    pub fn open_or_refuse(&mut self, read: Result<(Source, Origin), Refused>) {
+        match read {
+            Ok((source, origin)) => self.open(source, origin),
+            Err(Refused { error, text }) => {
+                self.files.refused_text = text;
+                self.refused = Some(error);
+            }
+        }
+    }
+
+    /// Puts up a card that says what could not be done.
+    pub fn refuse(&mut self, error: Error) {
+        self.files.refused_text = None;
+        self.refused = Some(error);
+    }
+
+    /// Says something for a moment.
+    pub fn say(&mut self, notice: impl Into<String>) {
+        self.notice = Some(notice.into());
     }
 }

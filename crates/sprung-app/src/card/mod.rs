@@ -1,30 +1,155 @@
-//! Cards over the scene: help, blow-ups, errors, files.
+//! Cards over the scene: help, blow-ups, errors, files. One at a time, so that none covers another.
 
+mod blow_up;
+mod error;
+mod file;
+mod help;
+mod hint;
+
+pub use help::GESTURES;
+
+use egui::{Align2, Context, Frame, Id, Key, Margin, Modal, Modifiers, Rect, RichText, ScrollArea, Ui, vec2};
 use sprung_driver::{Command, Trouble};
 
 use crate::action::Action;
+use crate::files;
+use crate::icon::{self, IconButton};
 use crate::state::AppState;
 
 /// The cards.
 #[derive(Default)]
-pub struct Cards {}
+pub struct Cards {
+    file: Option<file::FileCard>,
+    blow_up: blow_up::BlowUpCard,
+    notice: hint::Notice,
+}
 
 impl Cards {
-    /// Shows those that are up.
-    pub fn show(&mut self, context: &egui::Context, state: &mut AppState) {
-        let text = match &state.report.trouble {
-            None => return,
-            Some(Trouble::BlewUp(blow_up)) => blow_up.to_string(),
-            Some(Trouble::Refused(error)) => error.to_string(),
-        };
-        egui::Window::new("Trouble").show(context, |ui| {
-            ui.label(text);
-            if ui.button("Close").clicked() {
-                state.send(Command::Dismiss);
+    /// Shows the one that is up over the scene, and the hint and the notice where none is.
+    pub fn show(&mut self, context: &Context, state: &mut AppState, scene: Rect) {
+        if let Some(read) = files::dropped(context) {
+            self.file = None;
+            state.open_or_refuse(read);
+        }
+        if self.file.is_none() {
+            let picture = state.save_requests.first().map(file::FileCard::picture);
+            self.file = picture.or_else(|| state.film_name.as_deref().map(file::FileCard::film));
+        }
+        let trouble = state.report.trouble.clone();
+        self.blow_up.follow(trouble.as_ref(), state);
+        if let Some(error) = state.refused.clone() {
+            if error::show(context, &error, state.files.refused_text.as_deref()) {
+                state.refused = None;
+                state.files.refused_text = None;
             }
-        });
+        } else if let Some(error) = state.complaints.first().cloned() {
+            if error::show(context, &error, None) {
+                state.complaints.remove(0);
+            }
+        } else if let Some(card) = &mut self.file {
+            if card.show(context, state) {
+                card.finish(state);
+                self.file = None;
+            }
+        } else if let Some(trouble) = trouble {
+            match trouble {
+                Trouble::BlewUp(blow_up) => self.blow_up.show(context, state, &blow_up, scene),
+                Trouble::Refused(error) => {
+                    if error::show(context, &error, None) {
+                        state.send(Command::Dismiss);
+                    }
+                }
+            }
+        } else if state.shown.help {
+            state.shown.help = !help::show(context);
+        } else {
+            hint::show(context, state, scene);
+            if state.shown.presentation && context.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
+            {
+                state.shown.presentation = false;
+            }
+        }
+        self.notice.show(context, state, scene);
     }
 
     /// Puts up the card to open or save a file.
-    pub fn file(&mut self, _action: Action, _state: &mut AppState) {}
+    pub fn file(&mut self, action: Action, state: &mut AppState) {
+        self.file = match action {
+            Action::Save => Some(file::FileCard::save(state)),
+            _ => Some(file::FileCard::open()),
+        };
+    }
+}
+
+/// A card in the middle, over a dimmed window; gives whether it is to be closed. What is too long for the window scrolls.
+fn modal(context: &Context, id: &str, title: &str, width: f32, add: impl FnOnce(&mut Ui) -> bool) -> bool {
+    let room = context.content_rect().size();
+    // The room it may take, or it would be as small as cards are when egui knows nothing of them.
+    let area = Modal::default_area(Id::unique(id)).default_size(vec2(width, room.y));
+    let response = Modal::new(Id::unique(id)).area(area).frame(frame(context)).show(context, |ui| {
+        ui.set_width(width.min(room.x - 48.0));
+        // More than what it took before, or it could not grow.
+        ui.set_max_height((room.y - 60.0).max(160.0));
+        let closed = ui
+            .horizontal(|ui| {
+                ui.label(RichText::new(title).heading());
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), close_button).inner
+            })
+            .inner;
+        ui.add_space(6.0);
+        let done = ScrollArea::vertical()
+            .show(ui, |ui| {
+                // Keeps text clear of the scroll bar.
+                ui.set_width(ui.available_width() - 6.0);
+                add(ui)
+            })
+            .inner;
+        closed || done
+    });
+    response.inner || response.should_close()
+}
+
+/// A card beside what is seen, which stays bright and can be turned; gives whether Esc or its cross was pressed.
+fn beside(context: &Context, id: &str, title: RichText, scene: Rect, add: impl FnOnce(&mut Ui)) -> bool {
+    let width = 400.0_f32.min(scene.width() - 24.0).max(240.0);
+    let corner = scene.right_top() + vec2(-12.0, 12.0);
+    let area =
+        egui::Area::new(Id::unique(id)).order(egui::Order::Middle).pivot(Align2::RIGHT_TOP).fixed_pos(corner);
+    let closed = area
+        .show(context, |ui| {
+            frame(context)
+                .show(ui, |ui| {
+                    ui.set_width(width - 34.0);
+                    ui.set_max_height((scene.height() - 60.0).max(160.0));
+                    let closed = ui
+                        .horizontal(|ui| {
+                            ui.label(title.heading());
+                            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), close_button)
+                                .inner
+                        })
+                        .inner;
+                    ScrollArea::vertical().show(ui, add);
+                    closed
+                })
+                .inner
+        })
+        .inner;
+    closed || context.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+}
+
+fn close_button(ui: &mut Ui) -> bool {
+    let button =
+        IconButton::new(icon::CLOSE, "Close the card").with(|button| button.frame_when_inactive(false));
+    button.show(ui).on_hover_text("Close (Esc)").clicked()
+}
+
+fn frame(context: &Context) -> Frame {
+    Frame::window(&context.global_style()).inner_margin(Margin::symmetric(18, 14))
+}
+
+/// The button that is most likely wanted.
+fn primary(ui: &Ui, text: impl Into<String>) -> egui::Button<'static> {
+    let visuals = ui.visuals();
+    let text = RichText::new(text).strong().color(visuals.selection.stroke.color);
+    egui::Button::new(text).fill(visuals.selection.bg_fill)
 }

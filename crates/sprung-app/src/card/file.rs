@@ -1,0 +1,260 @@
+//! The cards to open and to save a scene, and the question whether a file may be replaced.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Context, RichText, TextEdit, Ui, vec2};
+use sprung::scene::Kind;
+
+use super::{modal, primary};
+use crate::files::{self, Dialog, ENDING, Origin, Wanted};
+use crate::panel::scenes::{entries, scene_button};
+use crate::state::{AppState, SaveRequest};
+
+/// What the card is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Purpose {
+    Open,
+    Save,
+    /// A picture that is ready.
+    Picture,
+    /// A film that was recorded; the view writes it.
+    Film,
+}
+
+/// A card with a path.
+pub struct FileCard {
+    purpose: Purpose,
+    path: String,
+    dialog: Option<Dialog>,
+    /// A file that is there already, and may be replaced only if the user says so.
+    asks_to_replace: Option<PathBuf>,
+    /// It has just been put up.
+    is_new: bool,
+}
+
+impl FileCard {
+    /// To open a scene.
+    pub fn open() -> Self {
+        Self {
+            purpose: Purpose::Open,
+            path: String::new(),
+            dialog: None,
+            asks_to_replace: None,
+            is_new: true,
+        }
+    }
+
+    /// To save the one that is open.
+    pub fn save(state: &AppState) -> Self {
+        let path = state.files.path_to_save().display().to_string();
+        Self { purpose: Purpose::Save, path, ..Self::open() }
+    }
+
+    /// To save a picture that waits in the state.
+    pub fn picture(request: &SaveRequest) -> Self {
+        Self { purpose: Purpose::Picture, path: request.name.clone(), ..Self::open() }
+    }
+
+    /// To save a film that waits; its ending says as what.
+    pub fn film(name: &str) -> Self {
+        Self { purpose: Purpose::Film, path: name.to_owned(), ..Self::open() }
+    }
+
+    /// What waited to be saved has been, or is not wanted.
+    pub fn finish(&self, state: &mut AppState) {
+        match self.purpose {
+            Purpose::Picture if !state.save_requests.is_empty() => {
+                state.save_requests.remove(0);
+            }
+            Purpose::Film => state.film_name = None,
+            _ => {}
+        }
+    }
+
+    /// The card; gives whether it is done with.
+    pub fn show(&mut self, context: &Context, state: &mut AppState) -> bool {
+        if let Some(dialog) = &mut self.dialog
+            && let Some(chosen) = dialog.poll(context)
+        {
+            self.dialog = None;
+            if let Some(path) = chosen {
+                self.path = path.display().to_string();
+                // A dialog of the system has asked about replacing already.
+                return self.go(state, true);
+            }
+        }
+        if let Some(path) = self.asks_to_replace.clone() {
+            return self.ask(context, state, &path);
+        }
+        match self.purpose {
+            Purpose::Open => modal(context, "open card", "Open a scene", 520.0, |ui| self.open_ui(ui, state)),
+            Purpose::Save => {
+                modal(context, "save card", "Save the scene", 520.0, |ui| self.save_ui(ui, state))
+            }
+            Purpose::Picture => modal(context, "picture card", "Save the picture", 520.0, |ui| {
+                self.media_ui(ui, state, "pictures", &["png"], "A picture of what is seen, as PNG.")
+            }),
+            Purpose::Film => modal(context, "film card", "Save the film", 520.0, |ui| {
+                let about = "As an animation (.gif), or as a film (.mp4), which needs ffmpeg.";
+                self.media_ui(ui, state, "films", &["gif", "mp4"], about)
+            }),
+        }
+    }
+
+    fn open_ui(&mut self, ui: &mut Ui, state: &mut AppState) -> bool {
+        let wanted = Wanted { title: "Open a scene", kind: "scenes", endings: &[ENDING], save_as: None };
+        let entered = self.path_row(ui, &wanted, "Open");
+        ui.weak("Or drop a file onto the window.");
+        let mut chosen = false;
+        for (kind, title) in [
+            (Kind::Report, "The four scenes of the report"),
+            (Kind::Gallery, "Gallery"),
+            (Kind::Benchmark, "Large, for measuring speed"),
+        ] {
+            ui.add_space(8.0);
+            ui.label(RichText::new(title).strong());
+            for entry in entries().iter().filter(|entry| entry.kind == kind) {
+                ui.horizontal(|ui| {
+                    chosen |= scene_button(ui, state, entry, entry.name, vec2(92.0, 0.0));
+                    ui.add(egui::Label::new(&entry.title).truncate());
+                });
+            }
+        }
+        chosen || (entered && self.go(state, false))
+    }
+
+    fn save_ui(&mut self, ui: &mut Ui, state: &mut AppState) -> bool {
+        let name = self.path.clone();
+        let wanted =
+            Wanted { title: "Save the scene", kind: "scenes", endings: &[ENDING], save_as: Some(&name) };
+        let entered = self.path_row(ui, &wanted, "Save");
+        ui.add_space(4.0);
+        ui.weak(
+            "Saved are the scene's bodies as they began, with all parameters as they are now: gravity, dt, sub-steps, masses, \
+             springs, pins, ground. `sprung run` takes the same file. Where things are at this moment is not saved.",
+        );
+        entered && self.go(state, false)
+    }
+
+    fn media_ui(
+        &mut self,
+        ui: &mut Ui,
+        state: &mut AppState,
+        kind: &str,
+        endings: &[&str],
+        about: &str,
+    ) -> bool {
+        let name = self.path.clone();
+        let wanted = Wanted { title: "Save", kind, endings, save_as: Some(&name) };
+        let entered = self.path_row(ui, &wanted, "Save");
+        ui.weak(about);
+        entered && self.go(state, false)
+    }
+
+    /// The field for a path, the system's dialog, and the button; gives whether the path is to be taken.
+    fn path_row(&mut self, ui: &mut Ui, wanted: &Wanted<'_>, verb: &str) -> bool {
+        let mut entered = false;
+        ui.horizontal(|ui| {
+            let label = ui.label("File");
+            let room = (ui.available_width() - 170.0).max(100.0);
+            let field = TextEdit::singleline(&mut self.path).hint_text("path of a file");
+            let response = ui.add(field.desired_width(room)).labelled_by(label.id);
+            if std::mem::take(&mut self.is_new) {
+                response.request_focus();
+            }
+            entered = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let is_free = self.dialog.is_none();
+            if ui.add_enabled(is_free, egui::Button::new("Browse…")).clicked() {
+                self.dialog = Some(Dialog::open(wanted));
+            }
+            let has_path = !self.path.trim().is_empty();
+            let button = primary(ui, verb);
+            entered |= ui.add_enabled(has_path, button).clicked();
+            entered &= has_path;
+        });
+        entered
+    }
+
+    /// Opens or saves; gives whether the card is done with.
+    fn go(&mut self, state: &mut AppState, may_replace: bool) -> bool {
+        let path = PathBuf::from(self.path.trim());
+        match self.purpose {
+            Purpose::Open => {
+                let read = files::read_scene(&path);
+                state.open_or_refuse(read.map(|source| (source, Origin::File(path))));
+                true
+            }
+            Purpose::Save | Purpose::Picture | Purpose::Film => {
+                let ending = match self.purpose {
+                    Purpose::Picture => "png",
+                    Purpose::Film => "gif",
+                    _ => ENDING,
+                };
+                let path = if path.extension().is_none() { path.with_extension(ending) } else { path };
+                if path.exists() && !may_replace {
+                    self.asks_to_replace = Some(path);
+                    return false;
+                }
+                self.save_to(state, &path);
+                true
+            }
+        }
+    }
+
+    /// The question; gives whether the card is done with.
+    fn ask(&mut self, context: &Context, state: &mut AppState, path: &Path) -> bool {
+        let mut answer = None;
+        let closed = modal(context, "replace card", "Replace the file?", 440.0, |ui| {
+            ui.label(format!("{} is there already. What it holds now would be lost.", path.display()));
+            ui.add_space(8.0);
+            ui.horizontal(|ui| {
+                if ui.add(primary(ui, "Replace it")).clicked() {
+                    answer = Some(true);
+                }
+                let keep = ui.button("Keep it");
+                // The harmless answer is the one under the Enter key.
+                if ui.memory(|memory| memory.focused().is_none()) {
+                    keep.request_focus();
+                }
+                if keep.clicked() {
+                    answer = Some(false);
+                }
+            });
+            false
+        });
+        if answer == Some(true) {
+            self.save_to(state, path);
+            return true;
+        }
+        if closed || answer == Some(false) {
+            // Back to the card, to choose another name.
+            self.asks_to_replace = None;
+            self.is_new = true;
+        }
+        false
+    }
+
+    /// Writes the file and says so, or says why not.
+    fn save_to(&self, state: &mut AppState, path: &Path) {
+        let written = match self.purpose {
+            Purpose::Film => {
+                state.film_path = Some(path.to_owned());
+                return;
+            }
+            Purpose::Picture => {
+                let bytes = state.save_requests.first().map_or(&[][..], |request| &request.bytes);
+                files::write(path, bytes)
+            }
+            _ => files::scene_text(&state.report).and_then(|text| files::write(path, text.as_bytes())),
+        };
+        match written {
+            Ok(bytes) => {
+                if self.purpose == Purpose::Save {
+                    state.files.origin = Origin::File(path.to_owned());
+                }
+                state.say(format!("Saved {} ({bytes} bytes)", path.display()));
+            }
+            Err(error) => state.refuse(error),
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The bar at the top: play, pause, step, pace, undo, and what of the window is shown.
+
+use egui::{ComboBox, Role, Ui, WidgetInfo, vec2};
+use sprung_driver::{Command, Pace};
+
+use super::{action_button, action_icon, action_toggle, undo_and_redo};
+use crate::action::Action;
+use crate::icon::{self, IconButton};
+use crate::state::{AppState, Tool};
+
+/// The bar; what does not fit goes on in another row.
+pub fn bar(ui: &mut Ui, state: &mut AppState) {
+    ui.add_space(2.0);
+    ui.horizontal_wrapped(|ui| {
+        play_button(ui, state);
+        for action in [Action::Step, Action::Frame, Action::Reset] {
+            action_button(ui, state, action);
+        }
+        pace(ui, state);
+        ui.separator();
+        undo_and_redo(ui, state);
+        ui.separator();
+        let (scissors, shown) = (state.tool == Tool::Scissors, state.shown);
+        action_toggle(ui, state, Action::Scissors, scissors);
+        for action in [Action::ResetView, Action::Picture, Action::Record] {
+            action_icon(ui, state, action);
+        }
+        ui.separator();
+        action_toggle(ui, state, Action::Panel, shown.controls);
+        action_toggle(ui, state, Action::Plots, shown.plots);
+        action_toggle(ui, state, Action::Explain, shown.explain);
+        for action in [Action::Presentation, Action::Theme, Action::Help] {
+            action_icon(ui, state, action);
+        }
+    });
+    ui.add_space(1.0);
+}
+
+fn play_button(ui: &mut Ui, state: &mut AppState) {
+    let (icon, name) = if state.report.playing { (icon::PAUSE, "Pause") } else { (icon::PLAY, "Play") };
+    // As wide for both words, so that the row does not jump.
+    let button = IconButton::new(icon, name).text(name).with(|button| button.min_size(vec2(76.0, 0.0)));
+    if button.show(ui).on_hover_text(Action::PlayPause.info().tooltip(ui.ctx())).clicked() {
+        state.act(Action::PlayPause);
+    }
+}
+
+fn pace(ui: &mut Ui, state: &mut AppState) {
+    let now = state.report.pace;
+    let combo =
+        ComboBox::from_id_salt("pace").width(126.0).selected_text(now.to_string()).show_ui(ui, |ui| {
+            for pace in Pace::ALL {
+                if ui.selectable_label(now == pace, pace.to_string()).clicked() {
+                    state.send(Command::Pace(pace));
+                }
+            }
+        });
+    let response = combo.response;
+    response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "pace"));
+    response.on_hover_text(
+        "How fast simulated time goes. The report's own pace is one frame of sub-steps for each sixtieth of a second: \
+         four to seven times faster than real time in its scenes.",
+    );
+}

@@ -1,0 +1,75 @@
+//! The tab that holds the run against a formula, where there is one.
+
+use egui::Ui;
+use sprung_driver::{Probe, Report, Sample};
+
+use super::canvas::Canvas;
+use super::oscillation::Oscillation;
+use super::save::Format;
+use super::shape::{self, Shape};
+use super::stretch::Stretch;
+use crate::action::Action;
+use crate::state::{AppState, SaveRequest};
+
+/// What fits the scene.
+#[derive(Default)]
+pub struct Formula {
+    oscillation: Oscillation,
+    stretch: Stretch,
+    shape: Option<Shape>,
+}
+
+impl Formula {
+    /// What must be recorded for it.
+    pub fn probes(&self) -> Vec<Probe> {
+        match &self.shape {
+            Some(Shape::Oscillator(oscillator)) => Oscillation::probes(oscillator),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The plot, or the reason why there is none.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        state: &mut AppState,
+        report: &Report,
+        samples: &[&Sample],
+        canvas: &mut Canvas,
+    ) {
+        self.shape = shape::recognise(&report.opened.model, &report.params);
+        match &self.shape {
+            Some(Shape::Oscillator(oscillator)) => {
+                self.oscillation.show(ui, state, report, samples, oscillator, canvas);
+            }
+            Some(Shape::Chain(chain)) => self.stretch.show(ui, state, report, chain, canvas),
+            None => no_formula(ui, state),
+        }
+    }
+
+    /// The curves as a file.
+    pub fn save(&self, report: &Report, samples: &[&Sample], format: Format) -> Option<SaveRequest> {
+        match &self.shape {
+            Some(Shape::Oscillator(oscillator)) => self.oscillation.save(report, samples, oscillator, format),
+            Some(Shape::Chain(chain)) => Stretch::save(report, chain, format),
+            None => None,
+        }
+    }
+}
+
+fn no_formula(ui: &mut Ui, state: &mut AppState) {
+    ui.add_space(8.0);
+    ui.label(
+        "No formula fits this scene as it is. There is one for a single mass on a spring from a fixed point, and one for a \
+         chain that hangs from one end: without a plane, cut springs or other forces.",
+    );
+    ui.horizontal(|ui| {
+        ui.label("Try");
+        for action in [Action::Scene(0), Action::Scene(1)] {
+            let info = action.info();
+            if ui.button(info.name).on_hover_text(info.description).clicked() {
+                state.act(action);
+            }
+        }
+    });
+}

@@ -1,0 +1,187 @@
+//! Plots as files: the numbers as `.csv`, the curves as `.svg` or `.png`. Bytes only; the files' door asks where.
+
+use std::fmt::Write;
+
+use egui_plot::LineStyle;
+use sprung_driver::{Probe, Report, Sample};
+use sprung_render::plot::{self, Chart};
+
+use super::entries::ENTRIES;
+use super::quantity;
+use super::value;
+use crate::state::SaveRequest;
+
+/// A format that plots are saved in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Numbers.
+    Csv,
+    /// A picture of lines.
+    Svg,
+    /// A picture of pixels.
+    Png,
+}
+
+/// A format as the menu shows it.
+#[derive(Clone, Copy, Debug)]
+pub struct FormatInfo {
+    /// The format.
+    pub format: Format,
+    /// Its name.
+    pub name: &'static str,
+    /// What it is good for.
+    pub description: &'static str,
+}
+
+/// All formats.
+pub const FORMATS: [FormatInfo; 3] = [
+    FormatInfo {
+        format: Format::Csv,
+        name: "Numbers (.csv)",
+        description: "A table with one row for each sample, for a spreadsheet or a program.",
+    },
+    FormatInfo {
+        format: Format::Svg,
+        name: "Picture of lines (.svg)",
+        description: "Sharp at any size, for a report or a page.",
+    },
+    FormatInfo {
+        format: Format::Png,
+        name: "Picture of pixels (.png)",
+        description: "For slides and messages.",
+    },
+];
+
+/// A curve to be drawn in a file.
+pub struct Curve {
+    /// What the legend calls it.
+    pub name: String,
+    /// sRGB on white.
+    pub colour: u32,
+    /// Solid, dashed, dotted.
+    pub style: LineStyle,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// The energy ledger.
+pub fn ledger(report: &Report, samples: &[&Sample], format: Format) -> Option<SaveRequest> {
+    if format == Format::Csv {
+        let header = ENTRIES.iter().map(|entry| format!("{} (J)", entry.name)).collect::<Vec<_>>();
+        let row = |sample: &Sample| ENTRIES.iter().map(|entry| Some((entry.value)(&sample.energy))).collect();
+        return Some(request(report, "energy", format, table(&header, samples, row).into_bytes()));
+    }
+    let energies: Vec<_> = samples.iter().map(|sample| (sample.time, sample.energy)).collect();
+    picture(report, "energy", &plot::energy_chart(&title(report, "energy"), &energies), format)
+}
+
+/// The recorded values of some probes as a table; cells are empty where nothing was recorded.
+pub fn values(report: &Report, samples: &[&Sample], probes: &[Probe]) -> Option<SaveRequest> {
+    let header: Vec<String> = probes.iter().map(|probe| quantity::axis(*probe)).collect();
+    let row = |sample: &Sample| probes.iter().map(|probe| value(sample, *probe)).collect();
+    Some(request(report, "traces", Format::Csv, table(&header, samples, row).into_bytes()))
+}
+
+/// A table of anything against time.
+pub fn rows(report: &Report, what: &str, header: &[String], rows: &[(f64, Vec<f64>)]) -> SaveRequest {
+    let mut text = format!("time (s),{}\n", header.join(","));
+    for (time, values) in rows {
+        let cells: Vec<String> = values.iter().map(f64::to_string).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{time},{}", cells.join(","));
+    }
+    request(report, what, Format::Csv, text.into_bytes())
+}
+
+/// Some curves as a picture.
+pub fn chart(
+    report: &Report,
+    what: &str,
+    across: String,
+    upwards: String,
+    curves: Vec<Curve>,
+    format: Format,
+) -> Option<SaveRequest> {
+    let curves = curves.into_iter().map(|Curve { name, colour, style, points }| plot::Curve {
+        name,
+        colour,
+        width: 1.8,
+        dash: match style {
+            LineStyle::Solid => &[],
+            LineStyle::Dashed { .. } => &[7.0, 4.0],
+            LineStyle::Dotted { .. } => &[2.0, 3.0],
+        },
+        points,
+    });
+    let chart =
+        Chart { title: title(report, what), across, upwards, unit: "", curves: curves.collect(), note: None };
+    picture(report, what, &chart, format)
+}
+
+/// One row for each sample: step, time, and the cells. Numbers read back to the same float64.
+fn table(header: &[String], samples: &[&Sample], row: impl Fn(&Sample) -> Vec<Option<f64>>) -> String {
+    let mut text = "step,time (s)".to_owned();
+    for name in header {
+        let _ = write!(text, ",{name}");
+    }
+    text.push('\n');
+    for sample in samples {
+        let _ = write!(text, "{},{}", sample.step, sample.time);
+        for cell in row(sample) {
+            text.push(',');
+            if let Some(value) = cell {
+                let _ = write!(text, "{value}");
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn picture(report: &Report, what: &str, chart: &Chart, format: Format) -> Option<SaveRequest> {
+    let bytes = match format {
+        Format::Svg => chart.svg(plot::SIZE).into_bytes(),
+        _ => chart.png(plot::SIZE).ok()?,
+    };
+    Some(request(report, what, format, bytes))
+}
+
+fn title(report: &Report, what: &str) -> String {
+    format!("{}: {what}", report.opened.scene.title)
+}
+
+fn request(report: &Report, what: &str, format: Format, bytes: Vec<u8>) -> SaveRequest {
+    let ending = match format {
+        Format::Csv => "csv",
+        Format::Svg => "svg",
+        Format::Png => "png",
+    };
+    SaveRequest { name: format!("{}-{what}.{ending}", report.opened.name), bytes }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::Energy;
+
+    #[test]
+    fn tables_hold_the_very_numbers() {
+        let sample = |step: u64, values: Vec<(Probe, f64)>| Sample {
+            step,
+            time: 0.1 + 0.2 * step as f64,
+            energy: Energy { kinetic: 1.0 / 3.0, elastic: f64::NAN, ..Energy::default() },
+            values,
+        };
+        let samples = [sample(0, vec![]), sample(1, vec![(Probe::Speed(1), 0.1 + 0.2)])];
+        let samples: Vec<&Sample> = samples.iter().collect();
+        let row = |sample: &Sample| vec![value(sample, Probe::Speed(1)), Some(sample.energy.kinetic)];
+        let text = table(&["speed".to_owned(), "kinetic".to_owned()], &samples, row);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "step,time (s),speed,kinetic");
+        assert_eq!(lines[1], "0,0.1,,0.3333333333333333");
+        let cells: Vec<&str> = lines[2].split(',').collect();
+        assert_eq!(cells[1].parse(), Ok(0.1 + 0.2 * 1.0));
+        assert_eq!(cells[2].parse(), Ok(0.1 + 0.2));
+        assert_eq!(lines.len(), 3);
+    }
+}

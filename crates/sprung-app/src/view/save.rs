@@ -1,0 +1,249 @@
+//! Pictures and films of what is seen.
+
+use std::path::PathBuf;
+
+use sprung::{Code, Error, Result};
+use sprung_render::export::{Progressed, Recording, Writing, write_png};
+use sprung_render::gpu::Marks;
+use web_time::{Duration, Instant};
+
+use super::canvas::Canvas;
+use crate::state::{AppState, FilmClock, PictureSize, SaveRequest};
+
+/// How long a film may be written before the window is drawn again.
+const PIECE: Duration = Duration::from_millis(12);
+/// The largest side of a picture, pixels.
+const LARGEST: u32 = 8192;
+
+/// What is being recorded or written.
+#[derive(Default)]
+enum Film {
+    #[default]
+    None,
+    Recording {
+        recording: Recording,
+        clock: Clock,
+    },
+    /// Waits until somebody has said where it is to go.
+    Waiting(Recording),
+    Writing(Box<Writing>),
+}
+
+/// When the next picture of a film is due.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Clock {
+    /// Time of the film's first picture: simulated or real, s.
+    begin: f64,
+    rate: f64,
+}
+
+impl Clock {
+    /// How many pictures there should be at a time: all those that the film shows until then.
+    fn due(&self, now: f64) -> usize {
+        // A hair earlier, so that a picture due at the very moment of a step is not missed by rounding.
+        let last = ((now - self.begin) * self.rate + 1e-6).floor();
+        if last >= 0.0 { last as usize + 1 } else { 0 }
+    }
+}
+
+/// Makes pictures and films.
+#[derive(Default)]
+pub struct Saver {
+    film: Film,
+    /// Real time of this frame, s.
+    real: f64,
+}
+
+impl Saver {
+    /// Makes a picture and asks where to save it.
+    pub fn picture(&mut self, canvas: &mut Canvas, state: &mut AppState, marks: &Marks, pixels: [u32; 2]) {
+        let size = size_of(state.picture_size, pixels);
+        let picture = self.make(canvas, state, marks, size);
+        if !self.is_recording() {
+            canvas.close_album();
+        }
+        match picture {
+            Ok(bytes) => {
+                let name = format!("{}.png", file_stem(&state.report.opened.name));
+                state.save_requests.push(SaveRequest { name, bytes });
+            }
+            Err(error) => state.complaints.push(error),
+        }
+    }
+
+    fn make(&self, canvas: &mut Canvas, state: &AppState, marks: &Marks, size: [u32; 2]) -> Result<Vec<u8>> {
+        let image = canvas.picture(state, marks, size).ok_or_else(no_card)?;
+        let mut bytes = Vec::new();
+        write_png(&mut bytes, &image).map_err(|error| {
+            Error::new(Code::Unwritable, format!("the picture cannot be encoded: {error}"))
+        })?;
+        Ok(bytes)
+    }
+
+    /// Begins a film, or ends it and asks where to save it.
+    pub fn toggle_film(&mut self, canvas: &mut Canvas, state: &mut AppState, pixels: [u32; 2]) {
+        match std::mem::take(&mut self.film) {
+            Film::None | Film::Waiting(_) => {
+                if !canvas.can_make_pictures() {
+                    return state.complaints.push(no_card());
+                }
+                let size = size_of(state.picture_size, pixels).map(|side| (side & !1).max(16));
+                let rate = f64::from(state.film_rate.clamp(1, 60));
+                match Recording::new(size, rate) {
+                    Ok(recording) => {
+                        let clock = Clock { begin: self.clock(state), rate };
+                        self.film = Film::Recording { recording, clock };
+                    }
+                    Err(error) => state.complaints.push(error),
+                }
+            }
+            Film::Recording { recording, .. } => {
+                canvas.close_album();
+                state.film_name = Some(format!("{}.gif", file_stem(&state.report.opened.name)));
+                self.film = Film::Waiting(recording);
+            }
+            writing @ Film::Writing(_) => self.film = writing,
+        }
+    }
+
+    /// Whether a film is being recorded.
+    pub fn is_recording(&self) -> bool {
+        matches!(self.film, Film::Recording { .. })
+    }
+
+    /// Takes the pictures that are due, or writes for some milliseconds; true if it wants to go on soon.
+    pub fn go_on(&mut self, canvas: &mut Canvas, state: &mut AppState, marks: &Marks, real: f64) -> bool {
+        self.real = real;
+        match std::mem::take(&mut self.film) {
+            Film::None => return false,
+            Film::Recording { mut recording, mut clock } => {
+                let now = self.clock(state);
+                if now < clock.begin {
+                    // Time was turned back, and the film goes on from there.
+                    clock.begin = now - recording.len() as f64 / clock.rate;
+                }
+                let taken = take(&mut recording, clock.due(now), canvas, state, marks);
+                self.film = Film::Recording { recording, clock };
+                if let Err(error) = taken {
+                    // What was recorded so far is kept.
+                    state.complaints.push(error);
+                    self.toggle_film(canvas, state, [0, 0]);
+                }
+            }
+            Film::Waiting(recording) => match state.film_path.take() {
+                Some(path) => self.begin_to_write(recording, path, state),
+                None => self.film = Film::Waiting(recording),
+            },
+            Film::Writing(writing) => match write(writing) {
+                Ok(Progressed::Going(writing)) => self.film = Film::Writing(writing),
+                Ok(Progressed::Done(_)) => {}
+                Err(error) => state.complaints.push(error),
+            },
+        }
+        matches!(self.film, Film::Recording { .. } | Film::Writing(_))
+    }
+
+    fn begin_to_write(&mut self, recording: Recording, path: PathBuf, state: &mut AppState) {
+        match recording.write_to(&path) {
+            Ok(writing) => self.film = Film::Writing(writing),
+            Err((recording, error)) => {
+                // Nothing is lost: another name may do.
+                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+                state.film_name = name;
+                state.complaints.push(error);
+                self.film = Film::Waiting(*recording);
+            }
+        }
+    }
+
+    /// The time that a film follows, s.
+    fn clock(&self, state: &AppState) -> f64 {
+        match state.film_clock {
+            FilmClock::Simulated => {
+                let (before, now) = (state.report.before.time, state.report.now.time);
+                before + (now - before) * state.report.blend
+            }
+            FilmClock::Real => self.real,
+        }
+    }
+
+    /// What the badge says while something goes on.
+    pub fn badge(&self) -> Option<String> {
+        match &self.film {
+            Film::None => None,
+            Film::Recording { recording, .. } => Some(format!("recording: {} pictures", recording.len())),
+            Film::Waiting(recording) => Some(format!("{} pictures to be saved", recording.len())),
+            Film::Writing(writing) => Some(format!("writing {:.0} %", 100.0 * writing.share_done())),
+        }
+    }
+}
+
+/// Takes pictures until there are as many as are due; where the window was slow, the same one again.
+fn take(
+    recording: &mut Recording,
+    due: usize,
+    canvas: &mut Canvas,
+    state: &AppState,
+    marks: &Marks,
+) -> Result<()> {
+    if recording.len() >= due {
+        return Ok(());
+    }
+    let image = canvas.picture(state, marks, recording.size()).ok_or_else(no_card)?;
+    // After a long pause of the window not minutes of the same picture.
+    let missing = (due - recording.len()).min(60);
+    (0..missing).try_for_each(|_| recording.push(&image))
+}
+
+fn write(mut writing: Box<Writing>) -> Result<Progressed> {
+    let begin = Instant::now();
+    loop {
+        match writing.go_on()? {
+            Progressed::Going(further) if begin.elapsed() < PIECE => writing = further,
+            other => return Ok(other),
+        }
+    }
+}
+
+/// The pixels of a picture of what fills so many of the window's.
+fn size_of(size: PictureSize, pixels: [u32; 2]) -> [u32; 2] {
+    let [width, height] = match size {
+        PictureSize::Window => pixels,
+        PictureSize::Twice => pixels.map(|side| 2 * side),
+        PictureSize::FullHd => [1920, 1080],
+    };
+    [width, height].map(|side| side.clamp(16, LARGEST))
+}
+
+/// A scene's name as part of a file's: letters, digits, dashes.
+fn file_stem(name: &str) -> String {
+    let keep = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
+    let stem: String = name.chars().take(60).map(keep).collect();
+    if stem.trim_matches(['-', '.']).is_empty() { "scene".to_owned() } else { stem }
+}
+
+fn no_card() -> Error {
+    let sentence = "a picture of what is seen is drawn by a graphics driver, and this window has none";
+    Error::new(Code::Unsupported, sentence).with_fix("use `sprung run SCENE -o NAME.png`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_film_has_as_many_pictures_as_its_time_asks_for() {
+        let clock = Clock { begin: 2.0, rate: 25.0 };
+        assert_eq!([2.0, 2.039, 2.04, 3.0].map(|now| clock.due(now)), [1, 1, 2, 26]);
+        assert_eq!(clock.due(0.0), 0);
+    }
+
+    #[test]
+    fn sizes_and_names_are_allowed_ones() {
+        assert_eq!(size_of(PictureSize::Window, [3, 700]), [16, 700]);
+        assert_eq!(size_of(PictureSize::Twice, [6000, 700]), [8192, 1400]);
+        assert_eq!(size_of(PictureSize::FullHd, [1, 1]), [1920, 1080]);
+        assert_eq!(file_stem("a/b\\c: d"), "a-b-c--d");
+        assert_eq!(file_stem("../"), "scene");
+    }
+}
