@@ -7,6 +7,8 @@
 
 mod shell;
 mod stages;
+mod window;
+mod window_story;
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -36,6 +38,11 @@ const STAGES: &[Stage] = &[
     },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
+    Stage {
+        name: "window",
+        about: "a real window on a virtual display does what a person asks of it",
+        run: window_story::run_all,
+    },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
     Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
     Stage {

@@ -48,6 +48,9 @@ impl Drop for Display {
     }
 }
 
+/// Somewhere in the middle of the scene of a window of the usual size, pixels.
+const MIDDLE: (i32, i32) = (800, 400);
+
 /// The program with its window.
 pub struct Window<'a> {
     display: &'a Display,
@@ -59,7 +62,8 @@ pub struct Window<'a> {
 impl<'a> Window<'a> {
     /// Starts `sprung` with some arguments in a folder, which is its home too, and waits for the window.
     pub fn open(display: &'a Display, sprung: &Path, arguments: &[&str], folder: &Path) -> Outcome<Self> {
-        let log = fs::File::create(folder.join("stderr.txt")).map_err(|error| format!("no log file: {error}"))?;
+        let log =
+            fs::File::create(folder.join("stderr.txt")).map_err(|error| format!("no log file: {error}"))?;
         let process = Command::new(sprung)
             .args(arguments)
             .current_dir(folder)
@@ -116,6 +120,45 @@ impl<'a> Window<'a> {
         quiet(&mut self.xdotool(&["mouseup", "1"])).map(drop)
     }
 
+    /// Does something while a key is held.
+    pub fn hold(&self, key: &str, act: impl FnOnce(&Self) -> Outcome) -> Outcome {
+        quiet(&mut self.xdotool(&["keydown", key]))?;
+        let outcome = act(self);
+        quiet(&mut self.xdotool(&["keyup", key]))?;
+        outcome
+    }
+
+    /// Opens a file by its path, through the card.
+    pub fn open_file(&self, path: &Path) -> Outcome {
+        self.key("ctrl+o")?;
+        sleep(Duration::from_secs(1));
+        self.text(&path.display().to_string())?;
+        self.key("Return")
+    }
+
+    /// The middle of the scene, right of the panel, pixels.
+    pub fn middle_of_scene(&self) -> (i32, i32) {
+        MIDDLE
+    }
+
+    /// Its picture once nothing moves any more.
+    pub fn steady(&mut self, name: &str) -> Outcome<Vec<u8>> {
+        let begun = Instant::now();
+        let mut before = self.picture(name)?;
+        loop {
+            sleep(Duration::from_millis(1500));
+            let now = self.picture(name)?;
+            if share_changed(&before, &now) == 0.0 {
+                return Ok(now);
+            }
+            self.must_live()?;
+            if begun.elapsed() > PATIENCE {
+                return Err(format!("{name}: the window does not come to rest"));
+            }
+            before = now;
+        }
+    }
+
     /// Makes it another size.
     pub fn resize(&self, width: u32, height: u32) -> Outcome {
         quiet(&mut self.xdotool(&["windowsize", &self.id, &width.to_string(), &height.to_string()])).map(drop)
@@ -123,7 +166,9 @@ impl<'a> Window<'a> {
 
     /// The title.
     pub fn title(&self) -> Outcome<String> {
-        Ok(String::from_utf8_lossy(&quiet(&mut self.xdotool(&["getwindowname", &self.id]))?).trim().to_owned())
+        Ok(String::from_utf8_lossy(&quiet(&mut self.xdotool(&["getwindowname", &self.id]))?)
+            .trim()
+            .to_owned())
     }
 
     /// Waits until the title contains something.
@@ -133,7 +178,10 @@ impl<'a> Window<'a> {
             self.must_live()?;
             if begun.elapsed() > PATIENCE {
                 let title = self.title()?;
-                return Err(format!("the title should contain \"{part}\", and is \"{title}\"; {}", self.log()));
+                return Err(format!(
+                    "the title should contain \"{part}\", and is \"{title}\"; {}",
+                    self.log()
+                ));
             }
             sleep(Duration::from_millis(100));
         }
