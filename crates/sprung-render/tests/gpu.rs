@@ -9,7 +9,7 @@ use std::sync::Arc;
 use sprung::{Change, Material, ModelBuilder, Params, Plane, Snapshot, SurfaceKind, Vec3};
 use sprung_io::RunInfo;
 use sprung_render::appearance::{Appearance, ColourBy, Points, Springs, Surfaces, Theme};
-use sprung_render::gpu::{Marks, Moment};
+use sprung_render::gpu::{Marks, Moment, Quality};
 
 use gpu_support::{Set, apart, device};
 use scenes::Motion;
@@ -83,6 +83,26 @@ fn a_chosen_background_is_exact() {
         for (x, y) in [(0, 0), (319, 0), (0, 239), (319, 239), (160, 2)] {
             assert_eq!(image.pixel(x, y), Some(background));
         }
+    }
+}
+
+#[test]
+fn a_processor_draws_the_same_colours() {
+    let Some(set) = set("drawing on a processor", square()) else { return };
+    let (look, motion) = (set.look, square());
+    let mut quick = Set::of_quality(Quality::Software, set.headless, motion, SIZE);
+    quick.look = look;
+    for background in [BACKGROUND, [0, 0, 0], [255, 255, 255], [1, 128, 254]] {
+        quick.look.background = Some(background);
+        assert_eq!(quick.draw().pixel(0, 0), Some(background));
+    }
+    let image = quick.draw();
+    let mut full = Set::new(quick.headless, square(), SIZE);
+    full.look = quick.look;
+    let expected = full.draw();
+    for place in full.positions() {
+        let [found, expected] = [&image, &expected].map(|image| full.colour_at(image, place));
+        assert!(apart(found, expected) <= SAME, "{found:?} and {expected:?} at {place}");
     }
 }
 

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use sprung::{Plane, Vec3};
 use sprung_render::Image;
 use sprung_render::appearance::{Appearance, ColourBy, Points, Springs, Surfaces, Theme};
-use sprung_render::gpu::{Marks, Moment};
+use sprung_render::gpu::{Marks, Moment, Quality};
 
 use gpu_support::{Set, device};
 use scenes::Motion;
@@ -91,8 +91,12 @@ fn both(name: &str, motion: impl Fn() -> Motion, change: impl Fn(&mut Set)) {
 }
 
 fn one(name: &str, motion: Motion, change: impl Fn(&mut Set)) {
+    of_quality(Quality::Full, name, motion, change);
+}
+
+fn of_quality(quality: Quality, name: &str, motion: Motion, change: impl Fn(&mut Set)) {
     let Some(headless) = device(&format!("the picture {name}")) else { return };
-    let mut set = Set::new(headless, motion, SIZE);
+    let mut set = Set::of_quality(quality, headless, motion, SIZE);
     change(&mut set);
     let by = set.look.colour_by;
     let positions = set.positions();
@@ -205,4 +209,16 @@ fn planes_may_lean_and_cross() {
             set.stage.set_params(&params);
         },
     );
+}
+
+#[test]
+fn a_processor_draws_the_same_more_simply() {
+    for (name, motion) in [("jelly", scenes::jelly(10, 5)), ("cloth", scenes::cloth(20, 5))] {
+        of_quality(Quality::Software, &format!("{name}-software"), motion, |_| {});
+    }
+    // Enough triangles that fewer are drawn.
+    of_quality(Quality::Software, "cloth-large-software", scenes::cloth(110, 3), |set| {
+        set.look.colour_by = ColourBy::Plain;
+        set.look.theme = Theme::Dark;
+    });
 }

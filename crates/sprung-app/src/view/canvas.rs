@@ -9,7 +9,7 @@ use sprung_driver::Report;
 use sprung_render::Image;
 use sprung_render::appearance::{Appearance, Theme};
 use sprung_render::camera::Camera;
-use sprung_render::gpu::{Marks, Moment, Stage, Timings};
+use sprung_render::gpu::{Marks, Moment, Quality, Stage, Timings};
 
 use super::drawn::Drawn;
 use super::pick::Seen;
@@ -59,7 +59,8 @@ struct Set {
 
 impl Set {
     fn new(gpu: &RenderState) -> Self {
-        Self { stage: Stage::new(&gpu.device, &gpu.queue), serial: None }
+        let quality = Quality::for_adapter(&gpu.adapter.get_info());
+        Self { stage: Stage::new(&gpu.device, &gpu.queue, quality), serial: None }
     }
 
     fn draw(&mut self, shown: &Shown) {

@@ -8,8 +8,6 @@ use crate::appearance::Appearance;
 use crate::camera::{Bounds, Camera};
 use crate::colour::srgb;
 
-/// Texels along each side of the shadow map.
-pub const SHADOW_SIDE: u32 = 1024;
 /// Planes that are drawn; common.wgsl knows it too.
 pub const MOST_PLANES: usize = 8;
 /// Stops of the colour scale; common.wgsl knows it too.
@@ -67,6 +65,7 @@ pub fn rows(
     bounds: &Bounds,
     params: Option<&Params>,
     appearance: &Appearance,
+    shadow_side: u32,
 ) -> Vec<Row> {
     let palette = palette(appearance.theme);
     let [right, up, forward] = camera.axes;
@@ -81,7 +80,7 @@ pub fn rows(
     rows.push(row(light.axes[1], shadows));
     rows.push(row(light.axes[2], 0.0));
     rows.push(row(light.centre, light.reach));
-    rows.push(row(light.up, 2.0 * light.reach / SHADOW_SIDE as f32));
+    rows.push(row(light.up, 2.0 * light.reach / shadow_side as f32));
     rows.extend([palette.sky, palette.floor, palette.sun].map(|[r, g, b]| [r, g, b, 0.0]));
     push_haze(&mut rows, camera, bounds, params, appearance, palette);
     push_scale(&mut rows, appearance, palette);
@@ -145,7 +144,7 @@ mod tests {
         let camera = crate::turntable::Turntable::framing(&Bounds::default(), 1.0).camera(Vec2::splat(100.0));
         let bounds = Bounds::default().grown(0.0);
         let light = Light::new(&bounds, Vec3::ZERO);
-        let found = rows(&camera, Vec2::splat(100.0), &light, &bounds, None, &Appearance::default());
+        let found = rows(&camera, Vec2::splat(100.0), &light, &bounds, None, &Appearance::default(), 512);
         assert_eq!(found.len() as u64 * 16, BYTES);
         let module =
             wgpu::naga::front::wgsl::parse_str(super::super::shaders::POINTS.text).expect("it is valid");

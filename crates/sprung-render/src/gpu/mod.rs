@@ -8,7 +8,12 @@
 //! A picture is made in three passes: what the key light sees (the shadow map), the scene itself in linear light with
 //! four samples for each pixel, and a last one that turns linear light into the sRGB numbers that egui expects. Depth is
 //! near/z, which is evenly fine at all distances.
+//!
+//! Drivers that draw on the processor (Mesa's lavapipe) take time for each sample, each texture read and each triangle.
+//! For them there is [`Quality::Software`], which looks nearly the same for a fraction of the work; the shaders know it
+//! as the constant `quick`.
 
+mod coarse;
 mod data;
 mod device;
 mod frame;
@@ -16,6 +21,7 @@ mod palette;
 mod passes;
 mod pipelines;
 mod plan;
+mod quality;
 mod read;
 mod scenery;
 mod shaders;
@@ -27,6 +33,7 @@ mod topology;
 use glam::Vec3;
 
 pub use device::{Headless, headless};
+pub use quality::Quality;
 pub use stage::{Stage, Timings};
 
 /// A moment to draw: where the points are, between two steps.

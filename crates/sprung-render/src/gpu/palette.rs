@@ -61,7 +61,7 @@ static LIGHT: Palette = Palette {
     haze: (0xe4_ea_f0, 0.26),
     balls: [0x12_7a_8a, 0x76_4d_a6, 0x4c_8a_26, 0xb8_55_7c, 0x8c_6c_2c, 0x34_63_ae],
     fixed: 0x1f_24_2b,
-    cloth_pale: [0xf6_ee_e0, 0xb9_d4_de],
+    cloth_pale: [0xe8_d4_b4, 0xa4_c4_d2],
     cloth_rich: [0x1f_8f_94, 0xec_9a_50],
     skin: [0x2a_a3_90, 0x18_58_4e],
     wire: 0x8b_95_a1,

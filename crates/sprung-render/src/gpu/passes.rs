@@ -10,8 +10,8 @@ use wgpu::{
 
 use super::Moment;
 use super::data::{Data, List, STYLE_STRIDE, Source};
-use super::frame::SHADOW_SIDE;
 use super::pipelines::{DEPTH, Pipe, Pipelines};
+use super::quality::Quality;
 use super::scenery::Sizes;
 use super::target::{self, Target};
 use crate::appearance::Appearance;
@@ -71,10 +71,10 @@ pub struct Passes {
 
 impl Passes {
     /// Compiles all shaders.
-    pub fn new(device: &Device) -> Self {
-        let pipelines = Pipelines::new(device);
+    pub fn new(device: &Device, quality: Quality) -> Self {
+        let pipelines = Pipelines::new(device, quality);
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-        let shadow_map = target::make(device, "shadow map", [SHADOW_SIDE; 2], DEPTH, 1, usage);
+        let shadow_map = target::make(device, "shadow map", [quality.shadow_side(); 2], DEPTH, 1, usage);
         let shadow_map = shadow_map.create_view(&Default::default());
         let sampler = device.create_sampler(&SamplerDescriptor {
             label: Some("shadow map"),
@@ -118,13 +118,15 @@ impl Passes {
     }
 
     fn scene_pass(&self, encoder: &mut CommandEncoder, data: &Data, target: &Target, calls: &[Call<'_>]) {
+        // Of several samples only their mean is kept.
+        let store = if target.samples.is_some() { StoreOp::Discard } else { StoreOp::Store };
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(RenderPassColorAttachment {
-                view: &target.samples,
+                view: target.samples.as_ref().unwrap_or(&target.resolved),
                 depth_slice: None,
-                resolve_target: Some(&target.resolved),
-                ops: Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard },
+                resolve_target: target.samples.as_ref().map(|_| &target.resolved),
+                ops: Operations { load: LoadOp::Clear(Color::BLACK), store },
             })],
             depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
                 view: &target.depth,

@@ -3,23 +3,21 @@
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState,
     BufferBindingType, ColorTargetState, ColorWrites, CompareFunction, DepthBiasState, DepthStencilState,
-    Device, FragmentState, MultisampleState, PipelineLayout, PipelineLayoutDescriptor, PrimitiveState,
-    PrimitiveTopology, RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderModule,
-    ShaderModuleDescriptor, ShaderSource, ShaderStages, TextureFormat, TextureSampleType,
-    TextureViewDimension, VertexAttribute, VertexBufferLayout, VertexFormat, VertexState, VertexStepMode,
+    Device, FragmentState, MultisampleState, PipelineCompilationOptions, PipelineLayout,
+    PipelineLayoutDescriptor, PrimitiveState, PrimitiveTopology, RenderPipeline, RenderPipelineDescriptor,
+    SamplerBindingType, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, TextureFormat,
+    TextureSampleType, TextureViewDimension, VertexAttribute, VertexBufferLayout, VertexFormat, VertexState,
+    VertexStepMode,
 };
 
 use super::frame;
+use super::quality::Quality;
 use super::shaders::{self, Shader};
 
-/// Linear light, kept in sRGB bytes: what the scene is drawn into.
-pub const COLOUR: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Depth of the scene, and of the shadow map.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// What egui takes.
 pub const FINISHED: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Samples of a pixel; every device can do four.
-pub const SAMPLES: u32 = 4;
 
 /// A way of drawing something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,7 +168,7 @@ impl Pipe {
             Self::Backdrop => triangles(&shaders::BACKDROP, Instances::None, Layer::Behind),
             Self::Points => points(Layer::Solid(true)),
             Self::Lines => springs("fs_main", Layer::Solid(true)),
-            Self::ThinLines => springs("fs_thin", Layer::Solid(false)),
+            Self::ThinLines => Spec { vertex: "vs_thin", ..springs("fs_thin", Layer::Solid(false)) },
             Self::Coils => triangles(&shaders::COILS, Instances::Spring, Layer::Solid(false)),
             Self::Surface => surface(Layer::Solid(false)),
             Self::Ground => quads(&shaders::GROUND, "vs_main", "fs_main", Instances::None, Layer::Blended),
@@ -226,7 +224,7 @@ pub struct Pipelines {
 
 impl Pipelines {
     /// Compiles all of them.
-    pub fn new(device: &Device) -> Self {
+    pub fn new(device: &Device, quality: Quality) -> Self {
         let tables = layout(device, "tables", &table_entries());
         let uniform = uniform(ShaderStages::VERTEX_FRAGMENT, true, 128);
         let style = layout(device, "style", &[uniform]);
@@ -258,9 +256,9 @@ impl Pipelines {
                 continue;
             };
             let layout = if spec.layer == Layer::Shadow { &light } else { &scene };
-            all.push(make(device, &format!("{pipe:?}"), &spec, module, layout));
+            all.push(make(device, &format!("{pipe:?}"), &spec, module, layout, quality));
         }
-        let finish = make_finish(device, &last);
+        let finish = make_finish(device, &last, quality);
         Self { tables, style, shadow, drawn, finish, all }
     }
 
@@ -315,7 +313,10 @@ fn make(
     spec: &Spec,
     module: &ShaderModule,
     layout: &PipelineLayout,
+    quality: Quality,
 ) -> RenderPipeline {
+    let constants = quality.constants();
+    let options = || PipelineCompilationOptions { constants: &constants, ..Default::default() };
     let attribute = |format, offset, shader_location| VertexAttribute { format, offset, shader_location };
     let (stride, attributes): (u64, &[VertexAttribute]) = match spec.instances {
         Instances::None => (0, &[]),
@@ -330,7 +331,7 @@ fn make(
     let buffers = [Some(buffer)];
     let is_shadow = spec.layer == Layer::Shadow;
     let target = ColorTargetState {
-        format: COLOUR,
+        format: quality.colour(),
         blend: matches!(spec.layer, Layer::Blended | Layer::Over).then_some(BlendState::ALPHA_BLENDING),
         write_mask: if spec.layer == Layer::DepthOnly { ColorWrites::empty() } else { ColorWrites::ALL },
     };
@@ -338,7 +339,7 @@ fn make(
     let fragment = spec.fragment.map(|entry| FragmentState {
         module,
         entry_point: Some(entry),
-        compilation_options: Default::default(),
+        compilation_options: options(),
         targets: if is_shadow { &[] } else { &targets },
     });
     // Depth is near/z: what is nearer is larger. In the shadow map it is the other way round.
@@ -358,7 +359,7 @@ fn make(
         vertex: VertexState {
             module,
             entry_point: Some(spec.vertex),
-            compilation_options: Default::default(),
+            compilation_options: options(),
             buffers: if spec.instances == Instances::None { &[] } else { &buffers },
         },
         primitive: PrimitiveState {
@@ -380,8 +381,8 @@ fn make(
             bias,
         }),
         multisample: MultisampleState {
-            count: if is_shadow { 1 } else { SAMPLES },
-            alpha_to_coverage_enabled: spec.layer == Layer::Solid(true),
+            count: if is_shadow { 1 } else { quality.samples() },
+            alpha_to_coverage_enabled: spec.layer == Layer::Solid(true) && quality.samples() > 1,
             ..Default::default()
         },
         fragment,
@@ -390,17 +391,17 @@ fn make(
     })
 }
 
-fn make_finish(device: &Device, layout: &PipelineLayout) -> RenderPipeline {
+fn make_finish(device: &Device, layout: &PipelineLayout, quality: Quality) -> RenderPipeline {
     let module = module(device, &shaders::FINISH);
-    let entry = |name| (Some(name), Default::default());
-    let ((vertex, options), (fragment, fragment_options)) = (entry("vs_main"), entry("fs_main"));
+    let constants = quality.constants();
+    let options = || PipelineCompilationOptions { constants: &constants, ..Default::default() };
     device.create_render_pipeline(&RenderPipelineDescriptor {
         label: Some("finish"),
         layout: Some(layout),
         vertex: VertexState {
             module: &module,
-            entry_point: vertex,
-            compilation_options: options,
+            entry_point: Some("vs_main"),
+            compilation_options: options(),
             buffers: &[],
         },
         primitive: PrimitiveState::default(),
@@ -408,8 +409,8 @@ fn make_finish(device: &Device, layout: &PipelineLayout) -> RenderPipeline {
         multisample: MultisampleState::default(),
         fragment: Some(FragmentState {
             module: &module,
-            entry_point: fragment,
-            compilation_options: fragment_options,
+            entry_point: Some("fs_main"),
+            compilation_options: options(),
             targets: &[Some(FINISHED.into())],
         }),
         multiview_mask: None,

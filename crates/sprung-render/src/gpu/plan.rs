@@ -97,7 +97,15 @@ struct Shown {
 
 impl Plan {
     /// Chooses what is drawn, and uploads the lists.
-    pub fn new(device: &Device, model: &Model, params: &Params, appearance: &Appearance) -> Self {
+    ///
+    /// `coarse` holds triangles for surfaces that are to be drawn with fewer of them.
+    pub fn new(
+        device: &Device,
+        model: &Model,
+        params: &Params,
+        appearance: &Appearance,
+        coarse: &[Option<Vec<[u32; 3]>>],
+    ) -> Self {
         let shown: Vec<Shown> =
             (0..model.bodies().len()).map(|body| shown(model, appearance, body)).collect();
         let springs = chosen_springs(model, appearance, &shown);
@@ -106,7 +114,7 @@ impl Plan {
             Springs::Coils => springs.len() <= MOST_COILS,
             _ => false,
         };
-        let (parts, corners) = chosen_surfaces(model, appearance, &shown);
+        let (parts, corners) = chosen_surfaces(model, appearance, &shown, coarse);
         let wireframe = appearance.surfaces == Surfaces::Wireframe;
         let edges: Vec<[u32; 3]> = if wireframe {
             let surfaces = model.surfaces().iter();
@@ -180,9 +188,14 @@ fn chosen_springs(model: &Model, appearance: &Appearance, shown: &[Shown]) -> Ve
     ranges.flatten().map(entry).collect()
 }
 
-fn chosen_surfaces(model: &Model, appearance: &Appearance, shown: &[Shown]) -> (Vec<Part>, Vec<u32>) {
+fn chosen_surfaces(
+    model: &Model,
+    appearance: &Appearance,
+    shown: &[Shown],
+    coarse: &[Option<Vec<[u32; 3]>>],
+) -> (Vec<Part>, Vec<u32>) {
     let (mut parts, mut corners) = (Vec::new(), Vec::new());
-    for surface in model.surfaces() {
+    for (index, surface) in model.surfaces().iter().enumerate() {
         let shown = shown[surface.body];
         // Inside a skin of a solid shown in detail nothing could be seen.
         let is_shown = match (appearance.surfaces, surface.kind) {
@@ -192,7 +205,10 @@ fn chosen_surfaces(model: &Model, appearance: &Appearance, shown: &[Shown]) -> (
         };
         if is_shown {
             let first = corners.len() as u32;
-            corners.extend(surface.triangles.iter().flatten());
+            // Springs and edges would not lie on a coarser one.
+            let is_bare = !shown.springs && appearance.surfaces != Surfaces::Wireframe;
+            let fewer = coarse.get(index).and_then(Option::as_ref).filter(|_| is_bare);
+            corners.extend(fewer.unwrap_or(&surface.triangles).iter().flatten());
             let is_pale = shown.springs && surface.kind == SurfaceKind::Cloth;
             parts.push(Part { corners: first..corners.len() as u32, kind: surface.kind, is_pale });
         }
@@ -245,7 +261,7 @@ mod tests {
                     assert_eq!(balls.len(), if points == Points::Hidden { 0 } else { 3 });
                     let wires = chosen_springs(&model, &appearance, &shown);
                     assert_eq!(wires.len(), if springs == Springs::Hidden { 0 } else { 3 });
-                    let (parts, corners) = chosen_surfaces(&model, &appearance, &shown);
+                    let (parts, corners) = chosen_surfaces(&model, &appearance, &shown, &[]);
                     let expected = usize::from(surfaces != Surfaces::Hidden);
                     assert_eq!((parts.len(), corners.len()), (expected, 3 * expected));
                     assert!(parts.iter().all(|part| part.is_pale == (springs != Springs::Hidden)));

@@ -229,12 +229,11 @@ fn solid<'a>(list: &mut Drawings<'a>, plan: &'a Plan, lens: &Lens<'_>, palette: 
         let casts = plan.springs.count <= MOST_SHADOWS && plan.parts.is_empty();
         let style = wire(palette.wire, sizes.wire, 0.62, is_plain);
         let mesh = Mesh::Instances(4, &plan.springs);
-        let pipe = if plan.springs.count > MOST_ROUND { Pipe::ThinLines } else { Pipe::Lines };
-        list.draw(&with(pipe, Pipe::ShadowLines, casts), Source::Now, mesh, style);
+        list.draw(&with(lines_for(&plan.springs), Pipe::ShadowLines, casts), Source::Now, mesh, style);
     }
     let mut style = wire(palette.edge, 0.5 * sizes.wire, 0.5, true);
     style.back[0] = 1.0; // they are no springs, and cannot be cut
-    list.draw(&[Pipe::Lines], Source::Now, Mesh::Instances(4, &plan.edges), style);
+    list.draw(&[lines_for(&plan.edges)], Source::Now, Mesh::Instances(4, &plan.edges), style);
 
     let count = lens.model.map_or(0, Model::point_count);
     let arrows = [
@@ -248,6 +247,11 @@ fn solid<'a>(list: &mut Drawings<'a>, plan: &'a Plan, lens: &Lens<'_>, palette: 
             list.draw(&[Pipe::Arrows], Source::Now, Mesh::Instances(ARROW, &plan.arrows), style);
         }
     }
+}
+
+/// How many lines are drawn.
+fn lines_for(list: &List) -> Pipe {
+    if list.count > MOST_ROUND { Pipe::ThinLines } else { Pipe::Lines }
 }
 
 /// Planes, the farthest first.

@@ -39,7 +39,9 @@ pub const FINISH: Shader = shader!("finish");
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::Quality;
     use wgpu::naga::back::glsl;
+    use wgpu::naga::back::pipeline_constants::process_overrides;
     use wgpu::naga::front::wgsl;
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -74,11 +76,18 @@ mod tests {
                     entry_point: entry.name.clone(),
                     multiview: None,
                 };
-                let mut text = String::new();
-                let policies = wgpu::naga::proc::BoundsCheckPolicies::default();
-                let writer = glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies);
-                let written = writer.and_then(|mut writer| writer.write());
-                assert!(written.is_ok(), "{} {}: {:?}", shader.name, entry.name, written.err());
+                // As wgpu does it: constants are put in first.
+                for quality in Quality::ALL {
+                    let constants = quality.constants().map(|(name, value)| (name.to_owned(), value));
+                    let constants = constants.into_iter().collect();
+                    let (module, info) = process_overrides(&module, &info, None, &constants)
+                        .unwrap_or_else(|error| panic!("{}: {error}", shader.name));
+                    let mut text = String::new();
+                    let policies = wgpu::naga::proc::BoundsCheckPolicies::default();
+                    let writer = glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies);
+                    let written = writer.and_then(|mut writer| writer.write());
+                    assert!(written.is_ok(), "{} {}: {:?}", shader.name, entry.name, written.err());
+                }
             }
         }
     }

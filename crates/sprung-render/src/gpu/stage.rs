@@ -7,10 +7,12 @@ use sprung::{Model, Params};
 use web_time::Instant;
 use wgpu::{Device, Queue};
 
+use super::coarse::coarser;
 use super::data::Data;
 use super::frame::{self, Light};
 use super::passes::{Lens, Passes};
 use super::plan::{Basis, Plan};
+use super::quality::Quality;
 use super::scenery::{Scenery, Sizes};
 use super::target::{self, Target};
 use super::topology;
@@ -36,11 +38,11 @@ pub struct Timings {
 /// [`Stage::texture`] to know when to register it again.
 ///
 /// ```no_run
-/// use sprung_render::gpu::{Marks, Moment, Stage, headless};
+/// use sprung_render::gpu::{Marks, Moment, Quality, Stage, headless};
 /// # fn draw(model: &std::sync::Arc<sprung::Model>, params: &sprung::Params, positions: &[sprung::Vec3],
 /// #     camera: &sprung_render::camera::Camera) -> sprung::Result<sprung_render::Image> {
 /// let headless = headless()?;
-/// let mut stage = Stage::new(&headless.device, &headless.queue);
+/// let mut stage = Stage::new(&headless.device, &headless.queue, Quality::for_adapter(&headless.info));
 /// stage.set_model(model);
 /// stage.set_params(params);
 /// let moment = Moment { now: positions, ..Moment::default() };
@@ -51,6 +53,7 @@ pub struct Timings {
 pub struct Stage {
     device: Device,
     queue: Queue,
+    quality: Quality,
     passes: Passes,
     data: Data,
     target: Option<Target>,
@@ -60,6 +63,8 @@ pub struct Stage {
     scenery: Scenery,
     /// How much of the sky each point sees, found from the first positions that are drawn.
     openness: Option<Vec<f32>>,
+    /// Triangles for surfaces that are to be drawn with fewer of them, found from the same positions.
+    coarse: Vec<Option<Vec<[u32; 3]>>>,
     /// Median rest length, m; 0 without springs.
     spacing: f32,
     /// The box around those positions: it sets the grid, which must not change while things move.
@@ -68,13 +73,14 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Compiles all shaders and makes empty tables.
-    pub fn new(device: &Device, queue: &Queue) -> Self {
-        let passes = Passes::new(device);
+    /// Compiles all shaders and makes empty tables. The quality stays; [`Quality::for_adapter`] chooses it.
+    pub fn new(device: &Device, queue: &Queue, quality: Quality) -> Self {
+        let passes = Passes::new(device, quality);
         let data = Data::new(device, &passes.pipelines.style);
         Self {
             device: device.clone(),
             queue: queue.clone(),
+            quality,
             passes,
             data,
             target: None,
@@ -83,6 +89,7 @@ impl Stage {
             plan: None,
             scenery: Scenery::default(),
             openness: None,
+            coarse: Vec::new(),
             spacing: 0.0,
             first: Bounds::default(),
             timings: Timings::default(),
@@ -97,6 +104,7 @@ impl Stage {
         self.params = None;
         self.plan = None;
         self.openness = None;
+        self.coarse.clear();
         self.spacing = topology::spacing(model);
         self.first = Bounds::default();
     }
@@ -147,7 +155,8 @@ impl Stage {
         self.choose(appearance);
         let device = &self.device;
         let target = self.target.take().filter(|target| target.size == possible);
-        let target = target.unwrap_or_else(|| Target::new(device, &self.passes.pipelines.drawn, possible));
+        let target = target
+            .unwrap_or_else(|| Target::new(device, &self.passes.pipelines.drawn, possible, self.quality));
         let params = self.params.as_ref().filter(|_| bounds.is_some());
         let shown = bounds.unwrap_or_default().grown(0.0);
         let sizes = self.sizes(&shown);
@@ -166,7 +175,8 @@ impl Stage {
         self.scenery.set_marks(device, marks, self.model.as_deref());
         let (calls, styles) = self.scenery.calls(plan, &lens);
         let picture = Vec2::new(possible[0] as f32, possible[1] as f32);
-        let rows = frame::rows(&camera, picture, &light, &lit, params, appearance);
+        let rows =
+            frame::rows(&camera, picture, &light, &lit, params, appearance, self.quality.shadow_side());
         self.data.set_uniforms(&self.queue, &rows, &styles);
         self.data.bind(device, &self.passes.pipelines.tables);
         self.passes.encode(device, &self.queue, &self.data, &target, &calls);
@@ -217,6 +227,10 @@ impl Stage {
         if moment.now.len() != points || points == 0 || self.params.is_none() {
             return None;
         }
+        if self.openness.is_none() && self.quality.is_coarse() {
+            let surfaces = model.surfaces().iter();
+            self.coarse = surfaces.map(|surface| coarser(&surface.triangles, moment.now)).collect();
+        }
         let openness = self.openness.get_or_insert_with(|| topology::openness(model, moment.now));
         let mut bounds = self.data.set_positions(&self.queue, moment, openness);
         if self.first == Bounds::default() {
@@ -239,7 +253,7 @@ impl Stage {
         let (Some(model), Some(params)) = (&self.model, &self.params) else { return };
         let basis = Basis::new(params, appearance);
         if self.plan.as_ref().is_none_or(|(old, _)| *old != basis) {
-            let plan = Plan::new(&self.device, model, params, appearance);
+            let plan = Plan::new(&self.device, model, params, appearance, &self.coarse);
             self.plan = Some((basis, plan));
         }
     }

@@ -1,19 +1,20 @@
-//! What is drawn into: colour and depth with four samples, the picture they become, and the one that egui shows.
+//! What is drawn into: colour and depth of all samples, the picture they become, and the one that egui shows.
 
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Device, Extent3d,
     Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
 };
 
-use super::pipelines::{COLOUR, DEPTH, FINISHED, SAMPLES};
+use super::pipelines::{DEPTH, FINISHED};
+use super::quality::Quality;
 
 /// All textures of one picture's size.
 pub struct Target {
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Four samples of linear light.
-    pub samples: TextureView,
-    /// Four depths.
+    /// All samples of linear light; none if there is one for each pixel.
+    pub samples: Option<TextureView>,
+    /// Their depths.
     pub depth: TextureView,
     /// Their mean.
     pub resolved: TextureView,
@@ -27,13 +28,14 @@ pub struct Target {
 
 impl Target {
     /// Makes them.
-    pub fn new(device: &Device, drawn: &BindGroupLayout, size: [u32; 2]) -> Self {
+    pub fn new(device: &Device, drawn: &BindGroupLayout, size: [u32; 2], quality: Quality) -> Self {
+        let (colour, samples) = (quality.colour(), quality.samples());
         let both = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
         let only = TextureUsages::RENDER_ATTACHMENT;
         let view = |label, format, samples, usage| {
             make(device, label, size, format, samples, usage).create_view(&Default::default())
         };
-        let resolved = view("resolved", COLOUR, 1, both);
+        let resolved = view("resolved", colour, 1, both);
         let finished = make(device, "finished", size, FINISHED, 1, both | TextureUsages::COPY_SRC);
         let drawn = device.create_bind_group(&BindGroupDescriptor {
             label: Some("drawn"),
@@ -42,8 +44,8 @@ impl Target {
         });
         Self {
             size,
-            samples: view("samples", COLOUR, SAMPLES, only),
-            depth: view("depth", DEPTH, SAMPLES, only),
+            samples: (samples > 1).then(|| view("samples", colour, samples, only)),
+            depth: view("depth", DEPTH, samples, only),
             resolved,
             finished_view: finished.create_view(&Default::default()),
             finished,

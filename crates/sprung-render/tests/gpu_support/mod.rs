@@ -6,7 +6,7 @@ use sprung::{Params, Vec3};
 use sprung_render::Image;
 use sprung_render::appearance::Appearance;
 use sprung_render::camera::{Bounds, Camera};
-use sprung_render::gpu::{Headless, Marks, Moment, Stage, headless};
+use sprung_render::gpu::{Headless, Marks, Moment, Quality, Stage, headless};
 use sprung_render::turntable::Turntable;
 
 use crate::scenes::Motion;
@@ -37,7 +37,11 @@ pub struct Set {
 
 impl Set {
     pub fn new(headless: Headless, motion: Motion, size: [u32; 2]) -> Self {
-        let mut stage = Stage::new(&headless.device, &headless.queue);
+        Self::of_quality(Quality::Full, headless, motion, size)
+    }
+
+    pub fn of_quality(quality: Quality, headless: Headless, motion: Motion, size: [u32; 2]) -> Self {
+        let mut stage = Stage::new(&headless.device, &headless.queue, quality);
         let (model, params) = (&motion.info.model, &motion.info.params);
         stage.set_model(model);
         stage.set_params(params);
@@ -86,7 +90,8 @@ pub fn camera(positions: &[Vec3], params: &Params, [width, height]: [u32; 2]) ->
         bounds.include(middle + plane.normal * plane.depth(middle));
     }
     let size = Vec2::new(width as f32, height as f32);
-    let bounds = bounds.grown(0.03 * bounds.size().length());
+    // Room for the spheres, and for a point alone.
+    let bounds = bounds.grown(0.1 + 0.08 * bounds.size().length());
     Turntable::framing(&bounds, size.x / size.y).camera(size)
 }
 

@@ -62,5 +62,5 @@ fn fs_main(in: Arrow) -> @location(0) vec4<f32> {
     let across = clamp(in.across, -1.0, 1.0);
     let normal = normalize(in.side * across + in.front * sqrt(1.0 - across * across));
     let colour = shade(style.colour.rgb, normal, -normalize(in.offset), 0.1, 0.3, 1.0, 1.0);
-    return vec4<f32>(hazed(colour, dot(in.offset, frame.forward.xyz)), 1.0);
+    return vec4<f32>(kept(hazed(colour, dot(in.offset, frame.forward.xyz))), 1.0);
 }

@@ -19,7 +19,12 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> Corner {
 @fragment
 fn fs_main(in: Corner) -> @location(0) vec4<f32> {
     if style.size.x > 0.5 {
-        return vec4<f32>(frame.backdrop_top.rgb, 1.0);
+        let light = frame.backdrop_top.rgb;
+        if quick {
+            let bright = 1.055 * pow(light, vec3<f32>(1.0 / 2.4)) - 0.055;
+            return vec4<f32>(select(bright, 12.92 * light, light <= vec3<f32>(0.0031308)), 1.0);
+        }
+        return vec4<f32>(light, 1.0);
     }
     let height = 0.5 - 0.5 * in.at.y;
     let share = height * height * (3.0 - 2.0 * height);
@@ -28,5 +33,5 @@ fn fs_main(in: Corner) -> @location(0) vec4<f32> {
     // A step of noise, so that the gradient shows no bands.
     let noise = fract(52.9829189 * fract(dot(in.clip.xy, vec2<f32>(0.06711056, 0.00583715)))) - 0.5;
     let step = (0.05 + 2.1 * sqrt(colour)) / 255.0;
-    return vec4<f32>(colour + noise * step, 1.0);
+    return vec4<f32>(kept(colour + noise * step), 1.0);
 }

@@ -123,7 +123,7 @@ fn fs_main(in: Tube) -> @location(0) vec4<f32> {
     let toward = -normalize(in.offset);
     let lit = lit_on(in.offset + frame.eye.xyz, normal);
     let colour = shade(in.colour, normal, toward, 0.3, 0.35, 1.0, lit);
-    return vec4<f32>(hazed(colour, dot(in.offset, frame.forward.xyz)), 1.0);
+    return vec4<f32>(kept(hazed(colour, dot(in.offset, frame.forward.xyz))), 1.0);
 }
 
 @vertex

@@ -1,3 +1,6 @@
+// Whether a processor draws, and much must stay simple.
+override quick: bool = false;
+
 // What every shader shares: the frame, the style of one drawing, the tables, and light.
 
 struct Frame {
@@ -148,6 +151,16 @@ fn shade(base: vec3<f32>, normal: vec3<f32>, toward: vec3<f32>, gloss: f32, edge
 fn hazed(colour: vec3<f32>, depth: f32) -> vec3<f32> {
     let share = clamp((depth - frame.counts.x) / (frame.counts.y - frame.counts.x), 0.0, 1.0);
     return mix(colour, frame.haze.rgb, frame.haze.w * share);
+}
+
+// What is written for light: itself, or its sRGB numbers (within half a step of 255) where a processor draws.
+fn kept(light: vec3<f32>) -> vec3<f32> {
+    if !quick {
+        return light;
+    }
+    let root = sqrt(clamp(light, vec3<f32>(0.0), vec3<f32>(1.0)));
+    let root4 = sqrt(root);
+    return 0.585122381 * root + 0.783140355 * root4 - 0.368262736 * sqrt(root4);
 }
 
 // Where things cross a plane they bear a line, as at the surface of water; `moved` is how far the place moves from

@@ -50,5 +50,12 @@ fn fs_main(in: Sheet) -> @location(0) vec4<f32> {
         let dark = 1.0 - soft_light(place - frame.light_z.xyz * frame.above.w);
         out = over(out, style.dark.rgb, style.dark.a * dark * frame.light_y.w);
     }
+    if quick {
+        // Numbers are mixed here, not light; on the background it shall come to the same.
+        let behind = 0.5 * (frame.backdrop_top.rgb + frame.backdrop_bottom.rgb);
+        let mixed = kept(mix(behind, out.rgb, out.a));
+        let from_behind = kept(behind);
+        return vec4<f32>(from_behind + (mixed - from_behind) / max(out.a, 1e-3), out.a);
+    }
     return out;
 }

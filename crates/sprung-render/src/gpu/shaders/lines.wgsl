@@ -61,8 +61,7 @@ fn ribbon(vertex: u32, from_place: vec3<f32>, to_place: vec3<f32>, colour: vec4<
     return out;
 }
 
-@vertex
-fn vs_spring(@builtin(vertex_index) vertex: u32, @location(0) spring: vec3<u32>) -> Ribbon {
+fn spring_ribbon(vertex: u32, spring: vec3<u32>) -> Ribbon {
     let a = point_at(spring.x);
     let b = point_at(spring.y);
     let constants = textureLoad(springs, cell(spring.z), 0).xy;
@@ -75,6 +74,26 @@ fn vs_spring(@builtin(vertex_index) vertex: u32, @location(0) spring: vec3<u32>)
     }
     let open = select(a.w, b.w, (vertex >> 1u) == 1u);
     return ribbon(vertex, a.xyz - frame.eye.xyz, b.xyz - frame.eye.xyz, vec4<f32>(colour, open));
+}
+
+@vertex
+fn vs_spring(@builtin(vertex_index) vertex: u32, @location(0) spring: vec3<u32>) -> Ribbon {
+    return spring_ribbon(vertex, spring);
+}
+
+// Thousands of lines: they are thin, so their ends need not be round, and shadows on them would not be seen. A processor
+// finds their light at the corners alone.
+@vertex
+fn vs_thin(@builtin(vertex_index) vertex: u32, @location(0) spring: vec3<u32>) -> Ribbon {
+    var out = spring_ribbon(vertex, spring);
+    if quick && out.at.w > 0.0 {
+        let toward = -normalize(out.offset);
+        let front = cross(out.side, out.axis);
+        let normal = select(-front, front, dot(front, toward) > 0.0);
+        let colour = shade(out.colour.rgb, normal, toward, 0.1, 0.35, out.colour.a, 1.0);
+        out.colour = vec4<f32>(kept(hazed(colour, dot(out.offset, frame.forward.xyz))), 1.0);
+    }
+    return out;
 }
 
 @vertex
@@ -107,7 +126,10 @@ fn normal_of(in: Ribbon, toward: vec3<f32>) -> vec3<f32> {
 
 @fragment
 fn fs_main(in: Ribbon) -> @location(0) vec4<f32> {
-    let cover = cover_of(in);
+    var cover = cover_of(in);
+    if quick {
+        cover = step(0.5, cover); // shares of a pixel take several samples
+    }
     if cover <= 0.0 {
         discard;
     }
@@ -116,12 +138,14 @@ fn fs_main(in: Ribbon) -> @location(0) vec4<f32> {
     let depth = dot(in.offset, frame.forward.xyz);
     let lit = lit_on(in.offset + frame.eye.xyz + normal * in.at.w, normal);
     let colour = shade(in.colour.rgb, normal, toward, 0.1, 0.35, in.colour.a, lit);
-    return vec4<f32>(hazed(colour, depth), cover * style.size.w);
+    return vec4<f32>(kept(hazed(colour, depth)), cover * style.size.w);
 }
 
-// Thousands of lines: they are thin, so their ends need not be round, and shadows on them would not be seen.
 @fragment
 fn fs_thin(in: Ribbon) -> @location(0) vec4<f32> {
+    if quick {
+        return vec4<f32>(in.colour.rgb * (1.0 - 0.2 * in.at.x * in.at.x), 1.0);
+    }
     let toward = -normalize(in.offset);
     let colour = shade(in.colour.rgb, normal_of(in, toward), toward, 0.1, 0.35, in.colour.a, 1.0);
     return vec4<f32>(hazed(colour, dot(in.offset, frame.forward.xyz)), 1.0);
@@ -138,7 +162,7 @@ fn fs_flat(in: Ribbon) -> @location(0) vec4<f32> {
         discard;
     }
     let across = clamp(in.at.x, -1.0, 1.0);
-    return vec4<f32>(in.colour.rgb * (1.0 - 0.3 * across * across), cover * style.size.w);
+    return vec4<f32>(kept(in.colour.rgb * (1.0 - 0.3 * across * across)), cover * style.size.w);
 }
 
 @vertex

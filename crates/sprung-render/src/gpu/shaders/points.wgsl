@@ -57,7 +57,7 @@ fn fs_main(ball: Ball) -> Pixel {
     let middle = dot(ball.centre.xyz, ray);
     let aside = length(ball.centre.xyz - ray * middle);
     var cover = clamp((radius - aside) / pixel_at(middle) + 0.5, 0.0, 1.0);
-    if style.size.w < 1.0 {
+    if quick || style.size.w < 1.0 {
         cover = step(0.5, cover); // the depth of a ghost, which is drawn first, knows no shares of pixels
     }
     if cover <= 0.0 {
@@ -75,7 +75,7 @@ fn fs_main(ball: Ball) -> Pixel {
         colour = ball.colour.rgb * (0.8 + 0.2 * dot(normal, -ray)); // a ghost throws back no light
     }
     var out: Pixel;
-    out.colour = vec4<f32>(hazed(colour, depth), cover * style.size.w);
+    out.colour = vec4<f32>(kept(hazed(colour, depth)), cover * style.size.w);
     out.depth = frame.eye.w / depth;
     return out;
 }

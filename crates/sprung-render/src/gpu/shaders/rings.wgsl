@@ -33,5 +33,5 @@ fn fs_main(in: Ring) -> @location(0) vec4<f32> {
     if cover <= 0.0 {
         discard;
     }
-    return vec4<f32>(style.colour.rgb, style.colour.a * cover);
+    return vec4<f32>(kept(style.colour.rgb), style.colour.a * cover);
 }

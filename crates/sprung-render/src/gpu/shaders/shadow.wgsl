@@ -37,6 +37,9 @@ fn soft_light(place: vec3<f32>) -> f32 {
     if inside <= 0.0 {
         return 1.0;
     }
+    if quick {
+        return mix(1.0, four(at, 1.2), inside);
+    }
     let rim = 0.8 * four(at, 4.6) + 0.2 * lit_at(at.xy, at.z);
     if rim <= 0.0 || rim >= 1.0 {
         return mix(1.0, rim, inside);
@@ -59,5 +62,9 @@ fn lit_on(place: vec3<f32>, normal: vec3<f32>) -> f32 {
         return 1.0;
     }
     let away = (1.6 * normal - 1.2 * frame.light_z.xyz) * frame.above.w;
-    return mix(1.0, four(map_of(place + away), 1.1), frame.light_x.w);
+    let at = map_of(place + away);
+    if quick {
+        return mix(1.0, lit_at(at.xy, at.z), frame.light_x.w);
+    }
+    return mix(1.0, four(at, 1.1), frame.light_x.w);
 }

@@ -81,7 +81,7 @@ fn fs_main(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<
     if style.size.w < 1.0 {
         colour = base * (0.8 + 0.2 * dot(normal, toward)); // a ghost throws back no light
     }
-    return vec4<f32>(hazed(colour, depth), style.size.w);
+    return vec4<f32>(kept(hazed(colour, depth)), style.size.w);
 }
 
 struct Cast {
