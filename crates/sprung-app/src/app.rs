@@ -1,6 +1,6 @@
 //! The window: its parts and where they lie.
 
-use sprung_driver::{Command, Handle};
+use sprung_driver::{Command, Handle, Report, Trouble};
 use sprung_render::appearance::Theme;
 use sprung_render::camera::Bounds;
 use sprung_render::turntable::Turntable;
@@ -31,6 +31,8 @@ pub struct App {
     serial: Option<u64>,
     /// How much larger everything is, to be kept.
     zoom: f32,
+    /// What the window is called now.
+    title: String,
 }
 
 impl App {
@@ -54,19 +56,15 @@ impl App {
             pointed_out: Vec::new(),
             shown: settings.shown(),
             overlays: Default::default(),
-            picture_size: Default::default(),
-            film_rate: 30,
-            film_clock: Default::default(),
+            filming: Default::default(),
             pixels_per_point: 1.0,
             save_requests: Vec::new(),
-            film_name: None,
-            film_path: None,
-            complaints: Vec::new(),
             plot: Default::default(),
             explain_stage: None,
+            explain_at: None,
             actions: Vec::new(),
             files: Files::new(origin),
-            refused: None,
+            refused: Default::default(),
             notice: None,
             hint: !settings.hint_taken,
             compares: false,
@@ -81,6 +79,7 @@ impl App {
             cards: Default::default(),
             serial: None,
             zoom: settings.zoom(),
+            title: String::new(),
         }
     }
 
@@ -157,7 +156,7 @@ impl App {
     }
 
     /// A new scene has been opened: looks at it.
-    fn follow(&mut self, context: &egui::Context) {
+    fn follow(&mut self) {
         let opened = self.state.report.opened.clone();
         if self.serial == Some(opened.serial) {
             return;
@@ -170,8 +169,29 @@ impl App {
         self.state.selection = None;
         self.state.pointed_out.clear();
         self.view.frame_scene(&mut self.state);
-        context.send_viewport_cmd(egui::ViewportCommand::Title(format!("{} – sprung", opened.name)));
     }
+
+    /// Calls the window by what it shows, so that it can be told in a list of windows, or by one who does not see it.
+    fn name_window(&mut self, context: &egui::Context) {
+        let title = title(&self.state.report, self.cards.open());
+        if title != self.title {
+            self.title.clone_from(&title);
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        }
+    }
+}
+
+/// The scene, what it is doing unless it plays, and the card that is up: "jelly, paused – sprung".
+fn title(report: &Report, card: Option<&str>) -> String {
+    let doing = match (&report.trouble, &report.busy) {
+        (Some(Trouble::BlewUp(_)), _) => Some("blew up"),
+        (_, Some(busy)) => Some(busy.as_str()),
+        _ if !report.playing => Some("paused"),
+        _ => None,
+    };
+    let doing = doing.map_or_else(String::new, |doing| format!(", {doing}"));
+    let card = card.map_or_else(String::new, |card| format!(", card: {card}"));
+    format!("{}{doing}{card} – sprung", report.opened.name)
 }
 
 impl eframe::App for App {
@@ -179,7 +199,7 @@ impl eframe::App for App {
         let seconds = ui.input(|input| input.unstable_dt.min(0.25));
         self.state.driver.pass(f64::from(seconds));
         self.state.report = self.state.driver.report();
-        self.follow(ui.ctx());
+        self.follow();
         self.zoom = ui.ctx().zoom_factor();
         self.state.pixels_per_point = ui.ctx().pixels_per_point();
         self.explain.keep_up(&mut self.state);
@@ -187,12 +207,38 @@ impl eframe::App for App {
         let mut actions = std::mem::take(&mut self.state.actions);
         actions.extend(action::pressed(ui.ctx()));
         actions.into_iter().for_each(|action| self.act(ui.ctx(), action));
+        self.name_window(ui.ctx());
         if self.state.report.playing {
             ui.ctx().request_repaint();
         }
     }
 
+    fn on_exit(&mut self) {
+        self.view.drop_film();
+    }
+
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         Settings::of(&self.state, self.zoom).save(storage);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::scene::Scene;
+    use sprung_driver::{Driver, Source};
+
+    #[test]
+    fn the_window_is_called_by_what_it_does() {
+        let scene = Scene::builtin("jelly").expect("it is built in");
+        let mut driver = Driver::new(Source { name: "jelly".to_owned(), scene }).expect("it can be built");
+        let mut report = (*driver.report()).clone();
+        report.playing = true;
+        assert_eq!(title(&report, None), "jelly – sprung");
+        report.playing = false;
+        assert_eq!(title(&report, None), "jelly, paused – sprung");
+        assert_eq!(title(&report, Some("Help")), "jelly, paused, card: Help – sprung");
+        report.busy = Some("settling".to_owned());
+        assert_eq!(title(&report, None), "jelly, settling – sprung");
     }
 }

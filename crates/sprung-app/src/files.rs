@@ -56,14 +56,12 @@ pub struct Files {
     pub origin: Origin,
     /// Where the scene that was asked for lies; it becomes `origin` when it is open.
     asked: Option<Origin>,
-    /// The text of the scene that was refused last, so that its error can show the line.
-    pub refused_text: Option<String>,
 }
 
 impl Files {
     /// Beginning with a scene from there.
     pub fn new(origin: Origin) -> Self {
-        Self { origin, asked: None, refused_text: None }
+        Self { origin, asked: None }
     }
 
     /// A scene from there has been asked for.
@@ -87,12 +85,12 @@ impl Files {
     }
 }
 
-/// A scene that cannot be opened: why, and its text if there is any.
-#[derive(Debug)]
+/// What cannot be done, such as opening a scene: why, and the scene's text if there is any.
+#[derive(Clone, Debug)]
 pub struct Refused {
     /// Why.
     pub error: Error,
-    /// What the file says.
+    /// What the file says, so that the line at fault can be shown.
     pub text: Option<String>,
 }
 

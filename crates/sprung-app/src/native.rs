@@ -28,6 +28,8 @@ const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
 pub struct Options {
     /// The scene; the last one if none is given, and the jelly at the very first start.
     pub source: Option<Source>,
+    /// Scenes that need more memory than this are refused, bytes. `None`: no limit.
+    pub memory_limit: Option<u64>,
 }
 
 /// Opens the window and returns when it is closed.
@@ -52,10 +54,14 @@ fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App
     let settings = Settings::load(context.storage);
     let (source, origin, refused) = first_source(options.source, &settings)?;
     let repaint = context.egui_ctx.clone();
-    let driver = Handle::thread(Driver::new(source)?, Box::new(move || repaint.request_repaint()))?;
+    let limits = sprung_driver::Options { memory_limit: options.memory_limit, ..Default::default() };
+    let driver = Driver::with(source, limits)?;
+    let driver = Handle::thread(driver, Box::new(move || repaint.request_repaint()))?;
     let mut app = App::new(driver, context);
     app.state_mut().files.origin = origin;
-    app.state_mut().refused = refused;
+    if let Some(error) = refused {
+        app.state_mut().refuse(error);
+    }
     Ok(app)
 }
 

@@ -1,5 +1,6 @@
 //! What all parts of the window share.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use sprung::Error;
@@ -11,6 +12,7 @@ use sprung_render::turntable::Turntable;
 use crate::action::Action;
 use crate::explain::Stage;
 use crate::files::{Files, Origin, Refused};
+use crate::media::{Filming, SaveRequest};
 use crate::plots::PlotKind;
 
 /// A point or a spring.
@@ -30,64 +32,6 @@ pub enum Tool {
     Hand,
     /// Parts springs.
     Scissors,
-}
-
-/// Bytes that wait to be saved; the files' door asks where.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SaveRequest {
-    /// The file name to suggest, with its ending.
-    pub name: String,
-    /// What the file is to hold.
-    pub bytes: Vec<u8>,
-}
-
-/// How large pictures and films of what is seen are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PictureSize {
-    /// As large as the view.
-    #[default]
-    Window,
-    /// Twice as wide and as high.
-    Twice,
-    /// 1920 by 1080 pixels.
-    FullHd,
-}
-
-impl PictureSize {
-    /// All of them, for menus.
-    pub const ALL: [Self; 3] = [Self::Window, Self::Twice, Self::FullHd];
-
-    /// Its name in a menu.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Window => "as in the window",
-            Self::Twice => "twice as wide and high",
-            Self::FullHd => "1920 \u{d7} 1080",
-        }
-    }
-}
-
-/// Which time a film follows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FilmClock {
-    /// The simulation's: smooth at its own speed, however slowly it ran. Pauses are left out.
-    #[default]
-    Simulated,
-    /// The clock on the wall: what was seen, pauses and all.
-    Real,
-}
-
-impl FilmClock {
-    /// All of them, for menus.
-    pub const ALL: [Self; 2] = [Self::Simulated, Self::Real];
-
-    /// Its name in a menu.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Simulated => "at the simulation's own time",
-            Self::Real => "as it was seen",
-        }
-    }
 }
 
 /// What may be written over the scene beyond the usual.
@@ -136,32 +80,24 @@ pub struct AppState {
     pub shown: Shown,
     /// What is written over the scene.
     pub overlays: Overlays,
-    /// How large pictures and films are.
-    pub picture_size: PictureSize,
-    /// Pictures in a second of a film.
-    pub film_rate: u32,
-    /// Which time a film follows.
-    pub film_clock: FilmClock,
+    /// How pictures and films are made, and what becomes of a film.
+    pub filming: Filming,
     /// Pixels for each of the window's points.
     pub pixels_per_point: f32,
     /// Files to be saved, until somebody asks where.
     pub save_requests: Vec<SaveRequest>,
-    /// A film was recorded and is to be saved: the file name to suggest, until somebody asks where.
-    pub film_name: Option<String>,
-    /// Where the recorded film is to go; its ending, `.gif` or `.mp4`, says as what.
-    pub film_path: Option<std::path::PathBuf>,
-    /// What could not be done, until it is read.
-    pub complaints: Vec<sprung::Error>,
     /// Which plot is shown.
     pub plot: PlotKind,
-    /// The stage of the step that is being explained; the view draws its arrows at the selection.
+    /// The stage of the step that is being explained; the view draws its arrows.
     pub explain_stage: Option<Stage>,
+    /// Where it is explained: the spring or the point that was chosen, else a spring that is worth a look.
+    pub explain_at: Option<Pick>,
     /// Asked for by a key or a button; done at the end of the frame.
     pub actions: Vec<Action>,
     /// Where the scene came from.
     pub files: Files,
-    /// What this window could not do, until it is read. The driver has its own in the report.
-    pub refused: Option<Error>,
+    /// What this window could not do, one after the other, until each is read. The driver has its own in the report.
+    pub refused: VecDeque<Refused>,
     /// A word that is shown for a moment, such as "saved chain.toml".
     pub notice: Option<String>,
     /// Whether the hint of the first start is still to be shown.
@@ -207,17 +143,20 @@ impl AppState {
     pub fn open_or_refuse(&mut self, read: Result<(Source, Origin), Refused>) {
         match read {
             Ok((source, origin)) => self.open(source, origin),
-            Err(Refused { error, text }) => {
-                self.files.refused_text = text;
-                self.refused = Some(error);
-            }
+            Err(refused) => self.queue(refused),
         }
     }
 
-    /// Puts up a card that says what could not be done.
+    /// Puts up a card that says what could not be done; after those that are not read yet.
     pub fn refuse(&mut self, error: Error) {
-        self.files.refused_text = None;
-        self.refused = Some(error);
+        self.queue(Refused { error, text: None });
+    }
+
+    fn queue(&mut self, refused: Refused) {
+        // Saying the same again and again would not help.
+        if self.refused.back().is_none_or(|last| last.error != refused.error) {
+            self.refused.push_back(refused);
+        }
     }
 
     /// Says something for a moment.

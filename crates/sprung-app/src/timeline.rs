@@ -2,16 +2,22 @@
 
 use egui::{EventFilter, Key, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use sprung::significant;
-use sprung_driver::{Command, Timeline};
+use sprung_driver::{Command, Report, Timeline};
 
 use crate::action::Action;
 use crate::icon::{self, IconButton};
-use crate::panel::{Speedometer, action_icon};
+use crate::panel::{Speedometer, action_icon, fixed_width};
 use crate::state::AppState;
 use crate::theme::Meaning;
 
 /// Height of the strip, points.
 const HEIGHT: f32 = 26.0;
+
+/// Room for the time and for the step, points.
+const MOMENT_WIDTHS: [f32; 2] = [104.0, 94.0];
+
+/// Room for the memory of the recording, points.
+const MEMORY_WIDTH: f32 = 152.0;
 
 /// How near the cursor must be to a mark to name it, points.
 const NEAR: f32 = 5.0;
@@ -28,9 +34,7 @@ impl TimelineBar {
         ui.add_space(3.0);
         ui.horizontal_wrapped(|ui| {
             buttons(ui, state);
-            let now = &state.report.now;
-            let moment = format!("t = {:>8.3} s   step {:>7}", now.time, now.step);
-            ui.label(RichText::new(moment).monospace());
+            moment(ui, &state.report);
             self.speedometer.show(ui, &state.report);
             memory(ui, &state.report.timeline);
             compare(ui, state);
@@ -51,6 +55,15 @@ fn buttons(ui: &mut Ui, state: &mut AppState) {
     }
     for action in [Action::Forward, Action::End] {
         action_icon(ui, state, action);
+    }
+}
+
+/// Time and step. All texts of the row have the same height, so that they stand on one line, and room for their longest
+/// content, so that none pushes the next.
+fn moment(ui: &mut Ui, report: &Report) {
+    let texts = [format!("t = {:>7.3} s", report.now.time), format!("step {:<7}", report.now.step)];
+    for (text, width) in texts.into_iter().zip(MOMENT_WIDTHS) {
+        fixed_width(ui, width, |ui| ui.label(RichText::new(text).monospace()));
     }
 }
 
@@ -99,7 +112,8 @@ fn compare(ui: &mut Ui, state: &mut AppState) {
 fn memory(ui: &mut Ui, timeline: &Timeline) {
     let mega = |bytes: usize| bytes.div_ceil(1 << 20);
     let (used, most) = timeline.bytes;
-    ui.weak(format!("recording: {} of {} MB", mega(used), mega(most))).on_hover_text(
+    let text = format!("recording: {} of {} MB", mega(used), mega(most));
+    fixed_width(ui, MEMORY_WIDTH, |ui| ui.weak(text)).on_hover_text(
         "States are kept now and then, and the steps between them are taken again when they are gone to: bit for bit the \
          same. When the memory is used up, the states kept lie further apart.",
     );

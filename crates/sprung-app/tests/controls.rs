@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use sprung::Vec3;
 use sprung::scene::{BUILTIN, Kind, Scene};
-use sprung_app::{ACTIONS, Action, App, AppState, PLANETS, Pick};
+use sprung_app::{ACTIONS, Action, App, AppState, FilmClock, PLANETS, Pick, PictureSize};
 use sprung_driver::{Command, Driver, Handle, Report, Source, Trouble};
 
 type Window = Harness<'static, App>;
@@ -162,7 +162,7 @@ fn every_scene_opens_by_its_button() {
         let mut window = window("chain");
         button(&mut window, &format!("scene {}", builtin.name));
         assert_eq!(report(&window).opened.name, builtin.name);
-        assert!(report(&window).trouble.is_none() && state(&window).refused.is_none());
+        assert!(report(&window).trouble.is_none() && state(&window).refused.is_empty());
         assert!(report(&window).playing);
     }
 }
@@ -431,14 +431,18 @@ fn a_bad_file_is_shown_with_its_line() {
         .expect("it can be written");
     let mut window = window("chain");
     open_path(&mut window, &path.display().to_string());
-    let error = state(&window).refused.clone().expect("the point has two coordinates");
+    let error = state(&window)
+        .refused
+        .front()
+        .map(|refused| refused.error.clone())
+        .expect("the point has two coordinates");
     assert_eq!(error.place().line_column.map(|(line, _)| line), Some(5));
     assert!(window.query_by_label("That did not work").is_some());
     assert!(window.query_by_label("   5 points = [[0, 0]]").is_some());
     assert_eq!(report(&window).opened.name, "chain", "what was open stays");
     window.key_press(Key::Escape);
     window.run_steps(3);
-    assert!(state(&window).refused.is_none());
+    assert!(state(&window).refused.is_empty());
     open_path(&mut window, "/nowhere/at/all.toml");
     assert!(window.query_by_label("There is no such file").is_some());
 }
@@ -502,7 +506,7 @@ fn a_dropped_file_opens() {
     assert_eq!(report(&window).opened.name, "lone");
     window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped("x.toml".into(), vec![0xff])));
     window.run_steps(3);
-    assert!(state(&window).refused.is_some());
+    assert!(!state(&window).refused.is_empty());
     assert_eq!(report(&window).opened.name, "lone");
 }
 
@@ -673,6 +677,20 @@ fn keys_are_text_while_someone_types_and_work_again_after() {
     window.run_steps(2);
     press(&mut window, Action::Step);
     assert_eq!(report(&window).now.step, 1);
+}
+
+#[test]
+fn how_pictures_and_films_are_made_can_be_chosen_in_the_panel() {
+    let mut window = window("spring");
+    click(&mut window, Role::DisclosureTriangle, "Pictures and films");
+    for name in ["1920 × 1080", "50 pictures a second", "as it was seen"] {
+        click(&mut window, Role::RadioButton, name);
+    }
+    let filming = &state(&window).filming;
+    assert_eq!((filming.size, filming.rate, filming.clock), (PictureSize::FullHd, 50, FilmClock::Real));
+    click(&mut window, Role::DisclosureTriangle, "Looks");
+    click(&mut window, Role::CheckBox, "Frame times");
+    assert!(state(&window).overlays.times);
 }
 
 #[test]

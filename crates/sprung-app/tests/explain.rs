@@ -64,6 +64,17 @@ fn the_key_goes_through_the_stages_and_takes_the_step() {
         assert_eq!(state(&mut window).explain_stage, Some(info.stage));
         assert!(window.query_by_label_contains(&format!("{}  ·  now", info.name)).is_some());
         assert_eq!(state(&mut window).report.now.step, step);
+        // Its arrow is in the scene, at both ends of the spring.
+        let called = match info.stage {
+            Stage::Springs => "spring and damper on",
+            Stage::Forces => "all forces on",
+            Stage::Velocity => "new velocity of",
+            Stage::Position => "way in this step of",
+        };
+        for end in ["i", "j"] {
+            let label = format!("{called} {end}: ");
+            assert!(window.query_by_label_contains(&label).is_some(), "{label}");
+        }
         press(&mut window);
     }
     assert_eq!(state(&mut window).report.now.step, step + 1, "after the last stage the step is taken");
@@ -73,6 +84,7 @@ fn the_key_goes_through_the_stages_and_takes_the_step() {
     state(&mut window).send(Command::Play(true));
     window.run_steps(2);
     assert_eq!(state(&mut window).explain_stage, None);
+    assert!(window.query_by_label_contains("spring and damper on i").is_none());
     press(&mut window);
     window.key_press(Key::E);
     window.run_steps(3);

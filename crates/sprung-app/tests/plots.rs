@@ -112,7 +112,7 @@ fn the_table_that_is_saved_holds_the_samples() {
     play(&mut window, 0.5);
     for (tab, columns) in [("Energy", 11), ("Traces", 3)] {
         click(&mut window, tab);
-        click(&mut window, "Save…");
+        click(&mut window, "Save plot…");
         click(&mut window, "Numbers (.csv)");
         let request = state(&mut window).save_requests.pop().expect("something to save");
         assert_eq!(request.name, format!("spring-{}.csv", tab.to_lowercase()));
@@ -136,7 +136,7 @@ fn the_table_that_is_saved_holds_the_samples() {
     {
         for tab in ["Energy", "Traces", "Formula"] {
             click(&mut window, tab);
-            click(&mut window, "Save…");
+            click(&mut window, "Save plot…");
             click(&mut window, format);
             let request = state(&mut window).save_requests.pop().expect("something to save");
             assert!(request.bytes.starts_with(begin), "{tab} {format}");
@@ -162,7 +162,7 @@ fn pulled_straight_down_the_spring_follows_its_formula() {
         let period = if columns == 2 { "6.31" } else { "7.7" };
         assert!(window.query_by_label_contains(&format!("formula  {period}")).is_some(), "{button}");
         assert!(window.query_by_label_contains(&format!(" 1.      {period}")).is_some(), "{button}");
-        click(&mut window, "Save…");
+        click(&mut window, "Save plot…");
         click(&mut window, "Numbers (.csv)");
         let request = state(&mut window).save_requests.pop().expect("something to save");
         let text = String::from_utf8(request.bytes).expect("it is text");

@@ -171,6 +171,19 @@ fn scissors_cut_a_spring_that_is_clicked() {
 }
 
 #[test]
+fn scissors_pass_by_points_and_what_is_chosen() {
+    let mut harness = window("jelly");
+    state(&mut harness).selection = Some(Pick::Point(3));
+    state(&mut harness).tool = Tool::Scissors;
+    let corner = place(&harness, 999).expect("it is seen");
+    hover(&mut harness, corner);
+    assert!(!matches!(state(&mut harness).hovered, Some(Pick::Point(_))));
+    click(&mut harness, corner);
+    assert_eq!(state(&mut harness).selection, Some(Pick::Point(3)));
+    assert_eq!(state(&mut harness).report.params.spring_cut.iter().filter(|cut| **cut).count(), 1);
+}
+
+#[test]
 fn empty_space_turns_the_scene_other_buttons_move_it_and_the_wheel_comes_nearer() {
     let mut harness = window("spring");
     let rect = view(&harness);
@@ -356,9 +369,24 @@ fn without_a_driver_a_picture_is_refused_in_one_sentence() {
     let mut harness = window("spring");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
     harness.run_steps(2);
-    let complaint = state(&mut harness).complaints.pop().expect("it says so");
-    assert_eq!(complaint.code(), sprung::Code::Unsupported);
+    let refused = state(&mut harness).refused.pop_front().expect("it says so");
+    assert_eq!(refused.error.code(), sprung::Code::Unsupported);
     assert!(state(&mut harness).save_requests.is_empty());
+}
+
+#[test]
+fn what_was_refused_is_read_one_after_the_other() {
+    let mut harness = window("spring");
+    for sentence in ["is too large", "is too small", "is too small"] {
+        state(&mut harness).refuse(sprung::Error::new(sprung::Code::TooLarge, sentence));
+    }
+    for sentence in ["too large", "too small"] {
+        harness.run_steps(2);
+        assert!(harness.query_by_label_contains(sentence).is_some(), "{sentence}");
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+    }
+    assert!(state(&mut harness).refused.is_empty(), "what was said twice is read once");
 }
 
 #[test]
@@ -396,6 +424,12 @@ fn a_jelly_in_its_plane_explains_itself_until_it_is_understood() {
     let mut harness = window("jelly");
     play(&mut harness, 240);
     assert!(harness.query_by_label_contains("the plane is a spring too").is_some());
+    // Nothing that lies under it is pointed at through it.
+    let note = harness.get_by_label_contains("the plane is a spring too").rect();
+    for x in 0..20 {
+        hover(&mut harness, note.lerp_inside(vec2(x as f32 / 20.0, 0.5)));
+        assert_eq!(state(&mut harness).hovered, None);
+    }
     harness.get_by_label("Understood").click();
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("the plane is a spring too").is_none());

@@ -5,7 +5,8 @@ mod view_support;
 
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
-use sprung_app::{App, Pick, PictureSize};
+use egui_kittest::kittest::Queryable;
+use sprung_app::{App, Film, Pick, PictureSize};
 use sprung_render::appearance::Theme;
 use view_support::*;
 
@@ -58,7 +59,7 @@ fn a_picture_has_the_size_that_was_chosen() {
         (PictureSize::FullHd, [1920, 1080]),
     ];
     for (size, [width, height]) in sizes {
-        state(&mut harness).picture_size = size;
+        state(&mut harness).filming.size = size;
         harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
         harness.run_steps(2);
         let request = state(&mut harness).save_requests.pop().expect("it asks where to save");
@@ -70,7 +71,7 @@ fn a_picture_has_the_size_that_was_chosen() {
         let side = |at: usize| u32::from_be_bytes(request.bytes[at..at + 4].try_into().expect("four bytes"));
         assert!(side(16).abs_diff(width) <= 2 && side(20).abs_diff(height) <= 2, "{}x{}", side(16), side(20));
     }
-    assert!(state(&mut harness).complaints.is_empty());
+    assert!(state(&mut harness).refused.is_empty());
 }
 
 #[test]
@@ -79,7 +80,7 @@ fn a_film_follows_the_simulations_time_and_becomes_a_file() {
     let folder = std::env::temp_dir().join(format!("sprung-film-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("there is room for temporary files");
     let path = folder.join("spring.gif");
-    state(&mut harness).film_rate = 25;
+    state(&mut harness).filming.rate = 25;
     let ctrl_r = |harness: &mut Harness<'static, App>| {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::R);
         harness.run_steps(2);
@@ -87,15 +88,15 @@ fn a_film_follows_the_simulations_time_and_becomes_a_file() {
     ctrl_r(&mut harness);
     play(&mut harness, 60);
     ctrl_r(&mut harness);
-    assert_eq!(state(&mut harness).film_name.as_deref(), Some("spring.gif"));
-    state(&mut harness).film_path = Some(path.clone());
+    assert_eq!(state(&mut harness).filming.film, Film::Waits("spring.gif".to_owned()));
+    state(&mut harness).filming.film = Film::To(path.clone());
     for _ in 0..600 {
         harness.run_steps(1);
         if path.exists() {
             break;
         }
     }
-    assert!(state(&mut harness).complaints.is_empty(), "{:?}", state(&mut harness).complaints);
+    assert!(state(&mut harness).refused.is_empty(), "{:?}", state(&mut harness).refused);
     let film = std::fs::read(&path).expect("it was written");
     assert!(film.starts_with(b"GIF89a"));
     // Each picture has a graphic control extension; a second of 25 pictures, with the first and the last.
@@ -105,6 +106,70 @@ fn a_film_follows_the_simulations_time_and_becomes_a_file() {
     let count = pictures.count();
     assert!((22..=28).contains(&count), "{count} pictures");
     std::fs::remove_dir_all(&folder).expect("it is ours");
+}
+
+#[test]
+fn a_film_that_is_still_written_leaves_no_file_when_the_window_closes() {
+    let Some(mut harness) = drawn("jelly") else { return };
+    let folder = tempfile::tempdir().expect("there is room for temporary files");
+    let film = |harness: &mut Harness<'static, App>| {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::R);
+        harness.run_steps(2);
+    };
+    film(&mut harness);
+    play(&mut harness, 60);
+    film(&mut harness);
+    state(&mut harness).filming.film = Film::To(folder.path().join("jelly.gif"));
+    harness.run_steps(2);
+    let is_writing = harness.query_by_label_contains("writing").is_some();
+    eframe::App::on_exit(harness.state_mut());
+    let files = std::fs::read_dir(folder.path()).expect("it is ours").count();
+    assert!(is_writing && files == 0, "{files} files, writing: {is_writing}");
+}
+
+#[test]
+fn a_film_is_lost_only_if_that_is_wanted() {
+    let Some(mut harness) = drawn("spring") else { return };
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::R);
+    harness.run_steps(3);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::R);
+    harness.run_steps(3);
+    harness.get_by_label("Save the film");
+    // Esc asks, and Esc again goes back.
+    for question in [true, false] {
+        harness.key_press(Key::Escape);
+        harness.run_steps(3);
+        assert_eq!(harness.query_by_label("Discard the film?").is_some(), question);
+        assert!(matches!(state(&mut harness).filming.film, Film::Waits(_)));
+    }
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    harness.get_by_label("Discard it").click();
+    harness.run_steps(3);
+    assert_eq!(state(&mut harness).filming.film, Film::None);
+    assert!(harness.query_by_label("Save the film").is_none());
+    assert!(harness.query_by_label_contains("pictures to be saved").is_none());
+}
+
+#[test]
+fn what_is_pointed_out_is_marked_even_where_it_is_selected() {
+    let Some(mut harness) = drawn("cloth") else { return };
+    let (point, spring) = (Pick::Point(210), Pick::Spring(30));
+    state(&mut harness).selection = Some(spring);
+    harness.run_steps(2);
+    let before = harness.render().expect("there is a driver");
+    state(&mut harness).pointed_out = vec![point, spring];
+    harness.run_steps(2);
+    let after = harness.render().expect("there is a driver");
+    let ends = state(&mut harness).report.opened.model.springs()[30].map(|end| end as usize);
+    let ends = ends.map(|end| place(&harness, end).expect("it is seen"));
+    for place in [place(&harness, 210).expect("it is seen"), ends[0].lerp(ends[1], 0.5)] {
+        let changed = before.enumerate_pixels().filter(|(x, y, pixel)| {
+            let near = (*x as f32 - place.x).hypot(*y as f32 - place.y) < 12.0;
+            near && after.get_pixel(*x, *y) != *pixel
+        });
+        assert!(changed.count() > 5, "nothing new around {place}");
+    }
 }
 
 #[test]

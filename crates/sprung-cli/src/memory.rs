@@ -10,16 +10,18 @@ use crate::console::bytes;
 /// # Errors
 /// [`Code::TooLarge`].
 pub fn check(needed: u64, what: &str) -> Result<()> {
-    let refresh = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     // Where the system does not tell, nothing is refused.
-    let available = System::new_with_specifics(refresh).map_or(0, |system| system.available_memory());
-    let available = limit().map_or(available, |limit| limit.min(available));
-    if available == 0 || needed <= available {
-        return Ok(());
-    }
+    let Some(available) = available().filter(|available| needed > *available) else { return Ok(()) };
     let sentence =
         format!("{what} needs about {} of memory, and {} are available", bytes(needed), bytes(available));
     Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or a smaller radius"))
+}
+
+/// Memory that the machine has to give to this process now, bytes, where the system tells.
+pub fn available() -> Option<u64> {
+    let refresh = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    let available = System::new_with_specifics(refresh).map_or(0, |system| system.available_memory());
+    (available > 0).then(|| limit().map_or(available, |limit| limit.min(available)))
 }
 
 /// What this process may still take of its address space, bytes, where there is such a limit and the system tells

@@ -8,12 +8,15 @@ use crate::icon;
 use crate::panel::fixed_width;
 use crate::theme::Meaning;
 
+/// What the card is called.
+pub const TITLE: &str = "That did not work";
+
 /// Most characters of a line that are shown around the fault.
 const WIDTH: usize = 72;
 
 /// The card; gives whether it is to be closed. `text` is that of the file, where it is known.
 pub fn show(context: &Context, error: &Error, text: Option<&str>) -> bool {
-    modal(context, "error card", "That did not work", 560.0, |ui| {
+    modal(context, "error card", TITLE, 560.0, |ui| {
         let colour = Meaning::Bad.colour(ui.visuals());
         let place = error.place();
         let sentence = match &place.field {

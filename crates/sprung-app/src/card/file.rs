@@ -7,8 +7,9 @@ use sprung::scene::Kind;
 
 use super::{modal, primary};
 use crate::files::{self, Dialog, ENDING, Origin, Wanted};
+use crate::media::{Film, SaveRequest};
 use crate::panel::scenes::{entries, scene_button};
-use crate::state::{AppState, SaveRequest};
+use crate::state::AppState;
 
 /// What the card is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub struct FileCard {
     dialog: Option<Dialog>,
     /// A file that is there already, and may be replaced only if the user says so.
     asks_to_replace: Option<PathBuf>,
+    /// It was closed while a film waits, which is lost only if the user says so.
+    asks_to_discard: bool,
     /// It has just been put up.
     is_new: bool,
 }
@@ -40,6 +43,7 @@ impl FileCard {
             path: String::new(),
             dialog: None,
             asks_to_replace: None,
+            asks_to_discard: false,
             is_new: true,
         }
     }
@@ -60,13 +64,25 @@ impl FileCard {
         Self { purpose: Purpose::Film, path: name.to_owned(), ..Self::open() }
     }
 
+    /// What it is called.
+    pub fn title(&self) -> &'static str {
+        match self.purpose {
+            Purpose::Open => "Open a scene",
+            Purpose::Save => "Save the scene",
+            Purpose::Picture => "Save the picture",
+            Purpose::Film => "Save the film",
+        }
+    }
+
     /// What waited to be saved has been, or is not wanted.
     pub fn finish(&self, state: &mut AppState) {
         match self.purpose {
             Purpose::Picture if !state.save_requests.is_empty() => {
                 state.save_requests.remove(0);
             }
-            Purpose::Film => state.film_name = None,
+            Purpose::Film if matches!(state.filming.film, Film::Waits(_)) => {
+                state.filming.film = Film::Unwanted;
+            }
             _ => {}
         }
     }
@@ -84,21 +100,29 @@ impl FileCard {
             }
         }
         if let Some(path) = self.asks_to_replace.clone() {
-            return self.ask(context, state, &path);
+            return self.ask_to_replace(context, state, &path);
         }
-        match self.purpose {
-            Purpose::Open => modal(context, "open card", "Open a scene", 520.0, |ui| self.open_ui(ui, state)),
-            Purpose::Save => {
-                modal(context, "save card", "Save the scene", 520.0, |ui| self.save_ui(ui, state))
-            }
-            Purpose::Picture => modal(context, "picture card", "Save the picture", 520.0, |ui| {
+        if self.asks_to_discard {
+            return self.ask_to_discard(context);
+        }
+        let (purpose, title) = (self.purpose, self.title());
+        let id = format!("{purpose:?} card");
+        let is_done = modal(context, &id, title, 520.0, |ui| match purpose {
+            Purpose::Open => self.open_ui(ui, state),
+            Purpose::Save => self.save_ui(ui, state),
+            Purpose::Picture => {
                 self.media_ui(ui, state, "pictures", &["png"], "A picture of what is seen, as PNG.")
-            }),
-            Purpose::Film => modal(context, "film card", "Save the film", 520.0, |ui| {
+            }
+            Purpose::Film => {
                 let about = "As an animation (.gif), or as a film (.mp4), which needs ffmpeg.";
                 self.media_ui(ui, state, "films", &["gif", "mp4"], about)
-            }),
+            }
+        });
+        if is_done && purpose == Purpose::Film && matches!(state.filming.film, Film::Waits(_)) {
+            self.asks_to_discard = true;
+            return false;
         }
+        is_done
     }
 
     fn open_ui(&mut self, ui: &mut Ui, state: &mut AppState) -> bool {
@@ -201,44 +225,37 @@ impl FileCard {
         }
     }
 
-    /// The question; gives whether the card is done with.
-    fn ask(&mut self, context: &Context, state: &mut AppState, path: &Path) -> bool {
-        let mut answer = None;
-        let closed = modal(context, "replace card", "Replace the file?", 440.0, |ui| {
-            ui.label(format!("{} is there already. What it holds now would be lost.", path.display()));
-            ui.add_space(8.0);
-            ui.horizontal(|ui| {
-                if ui.add(primary(ui, "Replace it")).clicked() {
-                    answer = Some(true);
-                }
-                let keep = ui.button("Keep it");
-                // The harmless answer is the one under the Enter key.
-                if ui.memory(|memory| memory.focused().is_none()) {
-                    keep.request_focus();
-                }
-                if keep.clicked() {
-                    answer = Some(false);
-                }
-            });
-            false
-        });
-        if answer == Some(true) {
-            self.save_to(state, path);
-            return true;
-        }
-        if closed || answer == Some(false) {
+    /// Whether the file may be replaced; gives whether the card is done with.
+    fn ask_to_replace(&mut self, context: &Context, state: &mut AppState, path: &Path) -> bool {
+        let text = format!("{} is there already. What it holds now would be lost.", path.display());
+        match question(context, "Replace the file?", &text, ["Replace it", "Keep it"]) {
+            Some(true) => {
+                self.save_to(state, path);
+                return true;
+            }
             // Back to the card, to choose another name.
-            self.asks_to_replace = None;
-            self.is_new = true;
+            Some(false) => (self.asks_to_replace, self.is_new) = (None, true),
+            None => {}
         }
         false
+    }
+
+    /// Whether the film may be lost; gives whether the card is done with.
+    fn ask_to_discard(&mut self, context: &Context) -> bool {
+        let text = "It is not saved yet, and cannot be made again.";
+        let answer = question(context, "Discard the film?", text, ["Discard it", "Back"]);
+        if answer == Some(false) {
+            (self.asks_to_discard, self.is_new) = (false, true);
+        }
+        answer == Some(true)
     }
 
     /// Writes the file and says so, or says why not.
     fn save_to(&self, state: &mut AppState, path: &Path) {
         let written = match self.purpose {
             Purpose::Film => {
-                state.film_path = Some(path.to_owned());
+                // The view writes it, a little in each frame.
+                state.filming.film = Film::To(path.to_owned());
                 return;
             }
             Purpose::Picture => {
@@ -257,4 +274,28 @@ impl FileCard {
             Err(error) => state.refuse(error),
         }
     }
+}
+
+/// A question whose first answer does harm, and whose second, or closing it, does not; `None` as long as it is open.
+fn question(context: &Context, title: &str, text: &str, [harm, harmless]: [&str; 2]) -> Option<bool> {
+    let mut answer = None;
+    let closed = modal(context, "question card", title, 440.0, |ui| {
+        ui.label(text);
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            if ui.add(primary(ui, harm)).clicked() {
+                answer = Some(true);
+            }
+            let keep = ui.button(harmless);
+            // The harmless answer is the one under the Enter key.
+            if ui.memory(|memory| memory.focused().is_none()) {
+                keep.request_focus();
+            }
+            if keep.clicked() {
+                answer = Some(false);
+            }
+        });
+        false
+    });
+    answer.or(closed.then_some(false))
 }

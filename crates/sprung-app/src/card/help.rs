@@ -5,6 +5,9 @@ use egui::{Align, Context, Grid, Layout, RichText, Ui, vec2};
 use super::modal;
 use crate::action::{ACTIONS, ActionInfo};
 
+/// What the card is called.
+pub const TITLE: &str = "Keys and gestures";
+
 /// Width of the column of keys, points.
 const KEYS_WIDTH: f32 = 148.0;
 
@@ -24,7 +27,7 @@ pub static GESTURES: [(&str, &str); 10] = [
 
 /// The card; gives whether it is to be closed.
 pub fn show(context: &Context) -> bool {
-    modal(context, "help card", "Keys and gestures", 860.0, |ui| {
+    modal(context, "help card", TITLE, 860.0, |ui| {
         let half = ACTIONS.len().div_ceil(2);
         if ui.available_width() > 700.0 {
             ui.columns(2, |columns| {

@@ -12,8 +12,9 @@ use egui::{Align2, Context, Frame, Id, Key, Margin, Modal, Modifiers, Rect, Rich
 use sprung_driver::{Command, Trouble};
 
 use crate::action::Action;
-use crate::files;
+use crate::files::{self, Refused};
 use crate::icon::{self, IconButton};
+use crate::media::Film;
 use crate::state::AppState;
 
 /// The cards.
@@ -22,6 +23,8 @@ pub struct Cards {
     file: Option<file::FileCard>,
     blow_up: blow_up::BlowUpCard,
     notice: hint::Notice,
+    /// What the one that is up is called.
+    open: Option<&'static str>,
 }
 
 impl Cards {
@@ -33,20 +36,21 @@ impl Cards {
         }
         if self.file.is_none() {
             let picture = state.save_requests.first().map(file::FileCard::picture);
-            self.file = picture.or_else(|| state.film_name.as_deref().map(file::FileCard::film));
+            self.file = picture.or_else(|| match &state.filming.film {
+                Film::Waits(name) => Some(file::FileCard::film(name)),
+                _ => None,
+            });
         }
         let trouble = state.report.trouble.clone();
         self.blow_up.follow(trouble.as_ref(), state);
-        if let Some(error) = state.refused.clone() {
-            if error::show(context, &error, state.files.refused_text.as_deref()) {
-                state.refused = None;
-                state.files.refused_text = None;
-            }
-        } else if let Some(error) = state.complaints.first().cloned() {
-            if error::show(context, &error, None) {
-                state.complaints.remove(0);
+        self.open = None;
+        if let Some(Refused { error, text }) = state.refused.front() {
+            self.open = Some(error::TITLE);
+            if error::show(context, error, text.as_deref()) {
+                state.refused.pop_front();
             }
         } else if let Some(card) = &mut self.file {
+            self.open = Some(card.title());
             if card.show(context, state) {
                 card.finish(state);
                 self.file = None;
@@ -55,12 +59,14 @@ impl Cards {
             match trouble {
                 Trouble::BlewUp(blow_up) => self.blow_up.show(context, state, &blow_up, scene),
                 Trouble::Refused(error) => {
+                    self.open = Some(error::TITLE);
                     if error::show(context, &error, None) {
                         state.send(Command::Dismiss);
                     }
                 }
             }
         } else if state.shown.help {
+            self.open = Some(help::TITLE);
             state.shown.help = !help::show(context);
         } else {
             hint::show(context, state, scene);
@@ -70,6 +76,11 @@ impl Cards {
             }
         }
         self.notice.show(context, state, scene);
+    }
+
+    /// What the card over the scene is called, if one is up; that of a blow-up lies beside it.
+    pub fn open(&self) -> Option<&'static str> {
+        self.open
     }
 
     /// Puts up the card to open or save a file.

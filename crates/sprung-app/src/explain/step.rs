@@ -47,6 +47,10 @@ impl StepPage {
         } else if self.has_paused {
             state.explain_stage = None;
         }
+        state.explain_at = match state.selection {
+            Some(Pick::Point(point)) => Some(Pick::Point(point)),
+            _ => self.chosen(state).map(Pick::Spring),
+        };
     }
 
     /// The page.

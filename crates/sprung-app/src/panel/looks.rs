@@ -4,7 +4,7 @@ use egui::{ComboBox, Ui};
 use sprung_render::appearance::{Appearance, ColourBy, Points, Springs, Surfaces, Theme};
 
 use super::number::{Number, Scale};
-use super::{action_button, number};
+use super::{action_button, number, pictures};
 use crate::action::Action;
 use crate::state::AppState;
 
@@ -49,6 +49,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     ui.checkbox(&mut look.ground, "Ground").on_hover_text("Ground planes with their grid.");
     ui.checkbox(&mut look.shadows, "Shadows").on_hover_text("Shadows on the ground.");
     background(ui, look);
+    pictures::overlays(ui, &mut state.overlays);
     ui.horizontal_wrapped(|ui| {
         action_button(ui, state, Action::ResetView);
         action_button(ui, state, Action::Presentation);

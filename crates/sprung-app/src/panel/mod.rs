@@ -6,6 +6,7 @@ mod groups;
 mod looks;
 mod number;
 mod params;
+pub mod pictures;
 pub mod scenes;
 mod speed;
 mod stability;
@@ -42,6 +43,13 @@ impl Controls {
             section(ui, "Stability", true, |ui| stability::show(ui, state));
             self.params.show(ui, state);
             section(ui, "Looks", false, |ui| looks::show(ui, state));
+            section(ui, "Pictures and films", false, |ui| {
+                pictures::show(ui, state);
+                ui.horizontal_wrapped(|ui| {
+                    action_button(ui, state, Action::Picture);
+                    action_button(ui, state, Action::Record);
+                });
+            });
             ui.add_space(8.0);
             self.follow_focus(ui);
         });

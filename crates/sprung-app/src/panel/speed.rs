@@ -14,7 +14,7 @@ const KEEPS_UP: f64 = 0.95;
 const AVERAGED: f32 = 30.0;
 
 /// Room for the longest sentence, so that nothing beside it jumps, points.
-const SPEED_WIDTH: f32 = 318.0;
+const SPEED_WIDTH: f32 = 252.0;
 
 /// Room for the time of a frame and the steps in a second, points.
 const STEPS_WIDTH: f32 = 232.0;
@@ -77,7 +77,7 @@ fn speed_text(report: &Report) -> Speed {
         return Speed { text, keeps_up: true };
     }
     let step = significant((1e5 * report.seconds_per_step).round() / 1e2);
-    Speed { text: format!("{shown} × real time: the step takes {step} ms"), keeps_up: false }
+    Speed { text: format!("{shown} × real time: {step} ms a step"), keeps_up: false }
 }
 
 #[cfg(test)]
@@ -98,10 +98,10 @@ mod tests {
         report.seconds_per_step = 0.0123456;
         for (speed, pace, text, keeps_up) in [
             (1.0, Pace::RealTime, "1.00 × real time", true),
-            (0.42, Pace::RealTime, "0.42 × real time: the step takes 12.35 ms", false),
+            (0.42, Pace::RealTime, "0.42 × real time: 12.35 ms a step", false),
             (0.5, Pace::Slow(2.0), "0.50 × real time", true),
             (0.01, Pace::Slow(100.0), "0.0100 × real time", true),
-            (1.0, Pace::Frames, "1.00 × real time: the step takes 12.35 ms", false),
+            (1.0, Pace::Frames, "1.00 × real time: 12.35 ms a step", false),
         ] {
             (report.speed, report.pace) = (speed, pace);
             let found = speed_text(&report);

@@ -9,7 +9,8 @@ use super::save::Format;
 use super::shape::{self, Shape};
 use super::stretch::Stretch;
 use crate::action::Action;
-use crate::state::{AppState, SaveRequest};
+use crate::media::SaveRequest;
+use crate::state::AppState;
 
 /// What fits the scene.
 #[derive(Default)]

@@ -135,7 +135,7 @@ impl Plots {
         {
             self.canvas.fit = true;
         }
-        ui.menu_button("Save…", |ui| {
+        ui.menu_button("Save plot…", |ui| {
             for format in save::FORMATS {
                 if ui.button(format.name).on_hover_text(format.description).clicked() {
                     let request = match state.plot {

@@ -11,7 +11,8 @@ use super::exact::{self, Damped};
 use super::save::{self, Format};
 use super::shape::Oscillator;
 use super::value;
-use crate::state::{AppState, SaveRequest};
+use crate::media::SaveRequest;
+use crate::state::AppState;
 
 /// A motion that leaves the vertical by less than this part of the length counts as vertical.
 const UPRIGHT: f64 = 1e-3;

@@ -9,7 +9,7 @@ use sprung_render::plot::{self, Chart};
 use super::entries::ENTRIES;
 use super::quantity;
 use super::value;
-use crate::state::SaveRequest;
+use crate::media::SaveRequest;
 
 /// A format that plots are saved in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

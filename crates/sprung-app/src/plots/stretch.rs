@@ -9,7 +9,8 @@ use super::entries::colour;
 use super::exact;
 use super::save::{self, Format};
 use super::shape::Chain;
-use crate::state::{AppState, SaveRequest};
+use crate::media::SaveRequest;
+use crate::state::AppState;
 
 /// Slower than this, m/s, a chain counts as hanging still.
 const STILL: f64 = 1e-3;

@@ -7,7 +7,8 @@ use sprung_driver::{Probe, Report, Sample};
 use super::canvas::{self, Canvas, Sheet, reading, swatch};
 use super::quantity::{self, Quantity};
 use super::{entries, ledger, save, value};
-use crate::state::{AppState, Pick, SaveRequest};
+use crate::media::SaveRequest;
+use crate::state::{AppState, Pick};
 
 /// Traces shown at the most: more cannot be told apart.
 const MOST: usize = 8;

@@ -2,11 +2,9 @@
 
 use std::ops::Range;
 
-use sprung::{Model, SurfaceKind};
-use sprung_render::appearance::{Appearance, Points, Springs, Surfaces};
-
-/// Bodies with a surface and more points than this are shown by their surface alone, unless the user wants otherwise.
-const CROWD: usize = 10_000;
+use sprung::Model;
+use sprung_render::appearance::{Appearance, Springs};
+use sprung_render::gpu::shown;
 
 /// What of a body is drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,28 +34,14 @@ impl Drawn {
     /// Follows the same choices as the picture.
     pub fn new(model: &Model, appearance: &Appearance) -> Self {
         let bodies = model.bodies().iter().enumerate().map(|(index, body)| {
-            let surface = model.surfaces().iter().find(|surface| surface.body == index);
-            let surface = surface.filter(|_| appearance.surfaces != Surfaces::Hidden);
-            let in_detail = surface.is_none() || body.points.len() <= CROWD;
-            let points = match appearance.points {
-                Points::Auto => in_detail,
-                Points::Spheres => true,
-                Points::Hidden => false,
-            };
-            let springs = match appearance.springs {
-                Springs::Auto => in_detail,
-                Springs::Lines | Springs::Coils => true,
-                Springs::Hidden => false,
-            };
-            // Inside the skin of a solid shown in detail nothing could be seen.
-            let skin_is_open = appearance.surfaces == Surfaces::Auto && (points || springs);
-            let surface = surface.is_some_and(|surface| surface.kind == SurfaceKind::Cloth || !skin_is_open);
+            let shown = shown(model, appearance, index);
+            let mut surfaces = model.surfaces().iter().filter(|surface| surface.body == index);
             DrawnBody {
                 point_range: body.points.clone(),
                 spring_range: body.springs.clone(),
-                points,
-                springs,
-                surface,
+                points: shown.points,
+                springs: shown.springs,
+                surface: surfaces.any(|surface| shown.surface(surface.kind)),
             }
         });
         let joints = model.joints().iter().filter(|_| appearance.springs != Springs::Hidden);

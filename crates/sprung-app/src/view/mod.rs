@@ -12,18 +12,20 @@ mod pointer;
 mod reading;
 mod save;
 mod scissors;
+mod stage_arrows;
 
 use std::sync::Arc;
 
 use glam::{Vec2, vec2};
-use sprung_driver::{Report, Trouble};
+use sprung_driver::Report;
 use sprung_render::appearance::{Points, Springs, Surfaces};
 use sprung_render::camera::Bounds;
 use sprung_render::gpu::Marks;
 use sprung_render::turntable::Turntable;
 
 use crate::action::Action;
-use crate::state::{AppState, FilmClock, Pick, PictureSize};
+use crate::panel::pictures;
+use crate::state::{AppState, Pick};
 
 use canvas::Canvas;
 use drawn::Drawn;
@@ -105,12 +107,19 @@ impl View {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Scene"));
         let size = vec2(rect.width(), rect.height());
         self.size = Some(size);
+        let before = state.camera;
         self.turn(ui, state, size);
         let real = ui.input(|input| input.time);
         self.legend.follow(real, state);
 
         self.look(state, size);
-        let eye = Eye { corner: rect.min, size, drawn: &self.drawn.1, seen: &self.seen.1 };
+        let eye = Eye {
+            corner: rect.min,
+            size,
+            drawn: &self.drawn.1,
+            seen: &self.seen.1,
+            covered: self.notes.place(),
+        };
         if self.pointer.act(ui, &response, state, &eye) {
             self.frame_scene(state);
             ui.ctx().request_repaint();
@@ -123,7 +132,10 @@ impl View {
             ui.ctx().request_repaint();
         }
         self.overlay(ui, rect, state);
-        self.pointer.tooltip(ui, &response, state);
+        // While the scene is turned, by whatever means, one looks at the scene.
+        if state.camera == before {
+            self.pointer.tooltip(ui, &response, state);
+        }
         response.context_menu(|ui| menu(ui, state));
     }
 
@@ -136,6 +148,11 @@ impl View {
             Action::Picture => self.saver.picture(&mut self.canvas, state, &marks, pixels),
             _ => self.saver.toggle_film(&mut self.canvas, state, pixels),
         }
+    }
+
+    /// Ends whatever goes on with a film, and leaves no half-written file.
+    pub fn drop_film(&mut self) {
+        self.saver.drop_film();
     }
 
     /// Sets the camera for a scene that is to be framed, or turns it on its way there.
@@ -220,10 +237,6 @@ impl View {
                 Pick::Spring(spring) => marks.alarming_springs.push(spring),
             }
         }
-        if let Some(Trouble::BlewUp(blow_up)) = &state.report.trouble {
-            marks.alarming_springs.extend(blow_up.spring);
-            marks.alarming_points.extend(&blow_up.points);
-        }
         if let Some(cut) = self.pointer.cut() {
             marks.alarming_springs.extend(cut.springs.iter().take(MOST_MARKED));
         }
@@ -247,6 +260,8 @@ impl View {
         if state.overlays.labels {
             overlay::labels(ui, rect, &self.seen.1);
         }
+        let camera = state.camera.camera(vec2(rect.width(), rect.height()));
+        stage_arrows::show(ui, rect, state, &camera);
         overlay::status(ui, rect, state, badge.as_deref());
         if state.overlays.times {
             overlay::times(ui, rect, state, self.canvas.timings());
@@ -273,22 +288,6 @@ fn menu(ui: &mut egui::Ui, state: &mut AppState) {
         }
     }
     ui.separator();
-    ui.menu_button("Size of pictures and films", |ui| {
-        for size in PictureSize::ALL {
-            ui.radio_value(&mut state.picture_size, size, size.name());
-        }
-    });
-    ui.menu_button("Films", |ui| {
-        for rate in [25, 30, 50] {
-            ui.radio_value(&mut state.film_rate, rate, format!("{rate} pictures a second"));
-        }
-        ui.separator();
-        for clock in FilmClock::ALL {
-            ui.radio_value(&mut state.film_clock, clock, clock.name());
-        }
-    });
-    ui.checkbox(&mut state.overlays.labels, "Numbers of points")
-        .on_hover_text("The index of each point, in scenes of few points.");
-    ui.checkbox(&mut state.overlays.times, "Frame times")
-        .on_hover_text("How long a step, the upload and the drawing of a picture take.");
+    ui.menu_button("Pictures and films", |ui| pictures::show(ui, state));
+    pictures::overlays(ui, &mut state.overlays);
 }

@@ -24,6 +24,15 @@ const MOST_LABELS: usize = 60;
 pub struct Notes {
     /// The scene whose note about its plane was read.
     plane_read: Option<u64>,
+    /// Where a note lies in the window, if there is one.
+    place: Option<Rect>,
+}
+
+impl Notes {
+    /// Where a note lies in the window, if there is one.
+    pub fn place(&self) -> Option<Rect> {
+        self.place
+    }
 }
 
 /// A panel behind text, so that it can be read over anything.
@@ -175,26 +184,37 @@ fn length_text(length: f32) -> String {
     format!("{} {unit}", sprung::significant(f64::from(format!("{value:.1e}").parse().unwrap_or(value))))
 }
 
+/// A colour, 0xRRGGBB, for each theme.
+fn ink(ui: &Ui, light: u32, dark: u32) -> Color32 {
+    let hex = if ui.visuals().dark_mode { dark } else { light };
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
+
+/// The colour of forces, as the renderer's arrows have it.
+pub fn force_ink(ui: &Ui) -> Color32 {
+    ink(ui, 0xa0_1f_6e, 0xf0_86_c4)
+}
+
+/// The colour of velocities.
+pub fn velocity_ink(ui: &Ui) -> Color32 {
+    ink(ui, 0x1b_7f_3b, 0x5f_d9_84)
+}
+
 /// What the arrows and the ghost are, above the colour legend at the bottom left.
 pub fn keys(ui: &Ui, view: Rect, below: f32, state: &AppState) {
     let mut lines: Vec<(Color32, String)> = Vec::new();
-    let dark = ui.visuals().dark_mode;
-    let pick = |light: u32, dark_one: u32| {
-        let hex = if dark { dark_one } else { light };
-        Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
-    };
     let appearance = &state.appearance;
     if appearance.velocity_arrows > 0.0 {
         let length = length_text(appearance.velocity_arrows);
-        lines.push((pick(0x1b_7f_3b, 0x5f_d9_84), format!("velocity: {length} for 1 m/s")));
+        lines.push((velocity_ink(ui), format!("velocity: {length} for 1 m/s")));
     }
     if appearance.force_arrows > 0.0 {
         let length = length_text(appearance.force_arrows);
-        lines.push((pick(0xa0_1f_6e, 0xf0_86_c4), format!("force: {length} for 1 N")));
+        lines.push((force_ink(ui), format!("force: {length} for 1 N")));
     }
     if let Some(ghost) = &state.report.comparison {
         let text = format!("the earlier run: at most {} m apart", steady(ghost.apart));
-        lines.push((pick(0x6d_7f_99, 0xa9_bb_d2), text));
+        lines.push((ink(ui, 0x6d_7f_99, 0xa9_bb_d2), text));
     }
     for (index, (colour, text)) in lines.into_iter().rev().enumerate() {
         let y = below - 12.0 - 18.0 * index as f32;
@@ -225,6 +245,7 @@ pub fn notes(
     let serial = report.opened.serial;
     let sunk = (notes.plane_read != Some(serial)).then(|| sunk(&report, extent)).flatten();
     let covered = drawn.covered_springs();
+    notes.place = None;
     if sunk.is_none() && covered == 0 {
         return;
     }
@@ -232,8 +253,8 @@ pub fn notes(
     let height = if sunk.is_some() { 86.0 } else { 30.0 };
     let corner = pos2(view.center().x - 0.5 * width, view.max.y - EDGE - height);
     let rect = Rect::from_min_size(corner, vec2(width, height));
-    at(ui, rect, Align2::CENTER_TOP, |ui| {
-        plate(ui).show(ui, |ui| {
+    let place = at(ui, rect, Align2::CENTER_TOP, |ui| {
+        let shown = plate(ui).show(ui, |ui| {
             ui.set_max_width(width);
             if let Some((depth, stiffness)) = sunk {
                 let (depth, stiffness) = (steady(depth.into()), sprung::significant(stiffness.into()));
@@ -256,7 +277,9 @@ pub fn notes(
                 ui.add(egui::Label::new(RichText::new(text).size(12.5)).selectable(false));
             }
         });
+        shown.response.rect
     });
+    notes.place = Some(place);
 }
 
 /// How deep the deepest free point is below a plane, m, and that plane's stiffness, if it is worth a word.

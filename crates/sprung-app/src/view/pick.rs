@@ -78,9 +78,31 @@ pub fn pick(
 ) -> Option<Pick> {
     let front = Front::new(model, drawn, seen, cursor, reach * POINT_REACH);
     let point = nearest_point(seen, drawn, cursor, reach * POINT_REACH, &front).map(Pick::Point);
-    let spring = || nearest_spring(model, cut, drawn, seen, cursor, reach * SPRING_REACH, &front);
+    let spring = || nearest_spring(model, cut, drawn.springs(), seen, cursor, reach * SPRING_REACH, &front);
     let corner = || front.corner(seen, cursor).map(Pick::Point);
     point.or_else(|| spring().map(Pick::Spring)).or_else(corner)
+}
+
+/// The spring that scissors at the cursor are on: the nearest within [`SPRING_REACH`] that is drawn or lies in a surface,
+/// and that none hides. Points are in no way: where springs are short, all of them is near a point.
+pub fn pick_to_cut(
+    model: &Model,
+    cut: &[bool],
+    drawn: &Drawn,
+    seen: &Seen,
+    cursor: Vec2,
+    reach: f32,
+) -> Option<usize> {
+    let reach = reach * SPRING_REACH;
+    let front = Front::new(model, drawn, seen, cursor, reach);
+    // Most springs of a large surface are far away, which this tells at once.
+    let sides = seen.sides(cursor - reach, cursor + reach);
+    let may_be_near = |spring: &usize| {
+        let [i, j] = model.springs()[*spring];
+        sides[i as usize] & sides[j as usize] == 0
+    };
+    let springs = drawn.springs_in_reach().filter(may_be_near);
+    nearest_spring(model, cut, springs, seen, cursor, reach, &front)
 }
 
 fn nearest_point(seen: &Seen, drawn: &Drawn, cursor: Vec2, reach: f32, front: &Front) -> Option<usize> {
@@ -103,14 +125,14 @@ fn nearest_point(seen: &Seen, drawn: &Drawn, cursor: Vec2, reach: f32, front: &F
 fn nearest_spring(
     model: &Model,
     cut: &[bool],
-    drawn: &Drawn,
+    springs: impl Iterator<Item = usize>,
     seen: &Seen,
     cursor: Vec2,
     reach: f32,
     front: &Front,
 ) -> Option<usize> {
     let mut best = Best::new(reach);
-    for spring in drawn.springs() {
+    for spring in springs {
         let [i, j] = model.springs()[spring];
         let Some((a, b)) = seen.ends([i, j]) else { continue };
         if cut.get(spring) == Some(&true) {

@@ -1,6 +1,6 @@
 //! What the pointer does in the scene: turn, move, pull, cut, choose.
 
-use egui::{CursorIcon, Key, Modifiers, PointerButton, Response, Ui};
+use egui::{CursorIcon, Key, Modifiers, PointerButton, RectAlign, Response, Ui};
 use glam::Vec2;
 use sprung::Change;
 use sprung_driver::{Command, Edit};
@@ -12,6 +12,9 @@ use super::scissors::Cut;
 use super::{gestures, reading};
 use crate::state::{AppState, Pick, Tool};
 
+/// From so far below the view's upper edge on, tooltips find room above the cursor, points.
+const ROOM_FOR_TOOLTIP: f32 = 200.0;
+
 /// The scene as it is seen in this frame.
 pub struct Eye<'a> {
     /// The view's upper left corner in the window.
@@ -22,6 +25,8 @@ pub struct Eye<'a> {
     pub drawn: &'a Drawn,
     /// Where every point appears.
     pub seen: &'a Seen,
+    /// Where a note lies over the scene, in the window.
+    pub covered: Option<egui::Rect>,
 }
 
 impl Eye<'_> {
@@ -29,9 +34,15 @@ impl Eye<'_> {
         Vec2::new(position.x - self.corner.x, position.y - self.corner.y)
     }
 
+    /// What the cursor is on, for the tool in hand.
     fn pick(&self, state: &AppState, cursor: Vec2, reach: f32) -> Option<Pick> {
-        let (model, params) = (&state.report.opened.model, &state.report.params);
-        pick::pick(model, &params.spring_cut, self.drawn, self.seen, cursor, reach)
+        let (model, cut) = (&state.report.opened.model, &state.report.params.spring_cut);
+        match state.tool {
+            Tool::Hand => pick::pick(model, cut, self.drawn, self.seen, cursor, reach),
+            Tool::Scissors => {
+                pick::pick_to_cut(model, cut, self.drawn, self.seen, cursor, reach).map(Pick::Spring)
+            }
+        }
     }
 }
 
@@ -81,9 +92,9 @@ impl Pointer {
             self.cursor - before
         });
         self.press(ui, response, state, eye);
+        let frame_all = self.click(ui, response, state, eye);
         self.go_on(ui, state, eye, moved);
         self.wheel(ui, response, state, eye);
-        let frame_all = self.click(ui, response, state, eye);
         self.hover(ui, response, state, eye);
         frame_all
     }
@@ -195,7 +206,14 @@ impl Pointer {
             return false;
         }
         let picked = eye.pick(state, self.cursor, reach(ui));
-        if response.double_clicked() && state.tool == Tool::Hand {
+        if state.tool == Tool::Scissors {
+            // What a click is on is cut like what a line crosses: when the button is let go of, as one edit.
+            if let (Doing::Cut(cut), Some(Pick::Spring(spring))) = (&mut self.doing, picked) {
+                cut.click(spring);
+            }
+            return false;
+        }
+        if response.double_clicked() {
             return match picked {
                 Some(Pick::Point(point)) => {
                     toggle_pin(state, point);
@@ -205,18 +223,14 @@ impl Pointer {
                 None => true,
             };
         }
-        match (state.tool, picked) {
-            (Tool::Scissors, Some(Pick::Spring(spring))) => {
-                let changes = vec![Change::Cut(spring..spring + 1, true)];
-                state.edit(Edit::new("cut a spring", changes));
-            }
-            _ => state.selection = picked,
-        }
+        state.selection = picked;
         false
     }
 
     fn hover(&mut self, ui: &Ui, response: &Response, state: &mut AppState, eye: &Eye<'_>) {
-        let is_here = response.contains_pointer() && !self.is_busy();
+        let place = ui.input(|input| input.pointer.latest_pos());
+        let on_note = eye.covered.zip(place).is_some_and(|(note, place)| note.contains(place));
+        let is_here = response.contains_pointer() && !on_note && !self.is_busy();
         let picked = if is_here { eye.pick(state, self.cursor, reach(ui)) } else { None };
         state.hovered = match &self.doing {
             Doing::Press(Press { point, .. }) | Doing::Pull(Hand { point, .. }) => Some(Pick::Point(*point)),
@@ -238,13 +252,13 @@ impl Pointer {
 
     /// The tooltip of what the cursor is on, unless something is being done.
     pub fn tooltip(&self, ui: &Ui, response: &Response, state: &AppState) {
-        let Some(hovered) = state.hovered.filter(|_| !self.is_busy()) else { return };
+        let is_menu_open = egui::Popup::is_any_open(ui.ctx());
+        let Some(hovered) = state.hovered.filter(|_| !self.is_busy() && !is_menu_open) else { return };
         let Some(reading) = reading::Reading::of(&state.report, hovered) else { return };
         let hint = match (state.tool, hovered) {
             (Tool::Hand, Pick::Point(_)) => "drag: pull \u{b7} Shift: carry \u{b7} double-click: pin",
             (Tool::Hand, Pick::Spring(_)) => "click: keep this in view",
-            (Tool::Scissors, Pick::Spring(_)) => "click: cut",
-            (Tool::Scissors, Pick::Point(_)) => "drag across springs: cut",
+            (Tool::Scissors, _) => "click, or drag across springs: cut",
         };
         let tooltip = egui::Tooltip::always_open(
             ui.ctx().clone(),
@@ -252,7 +266,12 @@ impl Pointer {
             response.id.with("reading"),
             egui::PopupAnchor::Pointer,
         );
-        tooltip.gap(16.0).show(|ui| {
+        // Above the cursor where there is room, so that it covers no note at the bottom.
+        let is_low = self.cursor.y > ROOM_FOR_TOOLTIP;
+        let mut tooltip = tooltip.gap(16.0);
+        tooltip.popup =
+            tooltip.popup.align(if is_low { RectAlign::TOP_START } else { RectAlign::BOTTOM_START });
+        tooltip.show(|ui| {
             super::overlay::reading_table(ui, &reading, "hovered");
             ui.weak(hint);
         });

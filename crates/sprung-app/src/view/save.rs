@@ -8,7 +8,8 @@ use sprung_render::gpu::Marks;
 use web_time::{Duration, Instant};
 
 use super::canvas::Canvas;
-use crate::state::{AppState, FilmClock, PictureSize, SaveRequest};
+use crate::media::{self, FilmClock, PictureSize, SaveRequest};
+use crate::state::AppState;
 
 /// How long a film may be written before the window is drawn again.
 const PIECE: Duration = Duration::from_millis(12);
@@ -57,7 +58,7 @@ pub struct Saver {
 impl Saver {
     /// Makes a picture and asks where to save it.
     pub fn picture(&mut self, canvas: &mut Canvas, state: &mut AppState, marks: &Marks, pixels: [u32; 2]) {
-        let size = size_of(state.picture_size, pixels);
+        let size = size_of(state.filming.size, pixels);
         let picture = self.make(canvas, state, marks, size);
         if !self.is_recording() {
             canvas.close_album();
@@ -67,7 +68,7 @@ impl Saver {
                 let name = format!("{}.png", file_stem(&state.report.opened.name));
                 state.save_requests.push(SaveRequest { name, bytes });
             }
-            Err(error) => state.complaints.push(error),
+            Err(error) => state.refuse(error),
         }
     }
 
@@ -83,27 +84,34 @@ impl Saver {
     /// Begins a film, or ends it and asks where to save it.
     pub fn toggle_film(&mut self, canvas: &mut Canvas, state: &mut AppState, pixels: [u32; 2]) {
         match std::mem::take(&mut self.film) {
-            Film::None | Film::Waiting(_) => {
+            Film::None => {
                 if !canvas.can_make_pictures() {
-                    return state.complaints.push(no_card());
+                    return state.refuse(no_card());
                 }
-                let size = size_of(state.picture_size, pixels).map(|side| (side & !1).max(16));
-                let rate = f64::from(state.film_rate.clamp(1, 60));
+                let size = size_of(state.filming.size, pixels).map(|side| (side & !1).max(16));
+                let rate = f64::from(state.filming.rate.clamp(1, 60));
                 match Recording::new(size, rate) {
                     Ok(recording) => {
                         let clock = Clock { begin: self.clock(state), rate };
                         self.film = Film::Recording { recording, clock };
                     }
-                    Err(error) => state.complaints.push(error),
+                    Err(error) => state.refuse(error),
                 }
             }
             Film::Recording { recording, .. } => {
                 canvas.close_album();
-                state.film_name = Some(format!("{}.gif", file_stem(&state.report.opened.name)));
+                let name = format!("{}.gif", file_stem(&state.report.opened.name));
+                state.filming.film = media::Film::Waits(name);
                 self.film = Film::Waiting(recording);
             }
-            writing @ Film::Writing(_) => self.film = writing,
+            // One after the other.
+            other @ (Film::Waiting(_) | Film::Writing(_)) => self.film = other,
         }
+    }
+
+    /// Ends whatever goes on with a film, and leaves no half-written file.
+    pub fn drop_film(&mut self) {
+        self.film = Film::None;
     }
 
     /// Whether a film is being recorded.
@@ -126,18 +134,22 @@ impl Saver {
                 self.film = Film::Recording { recording, clock };
                 if let Err(error) = taken {
                     // What was recorded so far is kept.
-                    state.complaints.push(error);
+                    state.refuse(error);
                     self.toggle_film(canvas, state, [0, 0]);
                 }
             }
-            Film::Waiting(recording) => match state.film_path.take() {
-                Some(path) => self.begin_to_write(recording, path, state),
-                None => self.film = Film::Waiting(recording),
+            Film::Waiting(recording) => match std::mem::take(&mut state.filming.film) {
+                media::Film::To(path) => self.begin_to_write(recording, path, state),
+                waits @ media::Film::Waits(_) => {
+                    state.filming.film = waits;
+                    self.film = Film::Waiting(recording);
+                }
+                media::Film::None | media::Film::Unwanted => state.say("The film was not kept"),
             },
             Film::Writing(writing) => match write(writing) {
                 Ok(Progressed::Going(writing)) => self.film = Film::Writing(writing),
-                Ok(Progressed::Done(_)) => {}
-                Err(error) => state.complaints.push(error),
+                Ok(Progressed::Done(_)) => state.say("The film is saved"),
+                Err(error) => state.refuse(error),
             },
         }
         matches!(self.film, Film::Recording { .. } | Film::Writing(_))
@@ -148,9 +160,9 @@ impl Saver {
             Ok(writing) => self.film = Film::Writing(writing),
             Err((recording, error)) => {
                 // Nothing is lost: another name may do.
-                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-                state.film_name = name;
-                state.complaints.push(error);
+                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                state.filming.film = media::Film::Waits(name);
+                state.refuse(error);
                 self.film = Film::Waiting(*recording);
             }
         }
@@ -158,7 +170,7 @@ impl Saver {
 
     /// The time that a film follows, s.
     fn clock(&self, state: &AppState) -> f64 {
-        match state.film_clock {
+        match state.filming.clock {
             FilmClock::Simulated => {
                 let (before, now) = (state.report.before.time, state.report.now.time);
                 before + (now - before) * state.report.blend

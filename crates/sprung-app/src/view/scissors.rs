@@ -37,6 +37,13 @@ impl Cut {
         self.line.push(cursor);
     }
 
+    /// Cuts the spring that was clicked, unless the line has crossed some on the way.
+    pub fn click(&mut self, spring: usize) {
+        if self.springs.is_empty() {
+            self.springs.insert(spring);
+        }
+    }
+
     /// The edit that makes the cut; `None` if nothing was crossed.
     pub fn edit(&self) -> Option<Edit> {
         let label = match self.springs.len() {

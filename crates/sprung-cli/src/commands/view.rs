@@ -7,6 +7,8 @@ use sprung::{Code, Result};
 use super::demo;
 use crate::args::SceneArgs;
 use crate::console::note;
+#[cfg(feature = "window")]
+use crate::memory;
 use crate::source;
 
 /// Opens the window on a scene, or on that of last time.
@@ -25,7 +27,7 @@ pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
 #[cfg(feature = "window")]
 fn window(opened: Option<(String, sprung::scene::Scene)>) -> Result<()> {
     let source = opened.map(|(name, scene)| sprung_app::Source { name, scene });
-    sprung_app::run(sprung_app::Options { source })
+    sprung_app::run(sprung_app::Options { source, memory_limit: memory::available() })
 }
 
 #[cfg(not(feature = "window"))]

@@ -33,6 +33,7 @@ mod topology;
 use glam::Vec3;
 
 pub use device::{Headless, headless};
+pub use plan::{Shown, shown};
 pub use quality::Quality;
 pub use stage::{Stage, Timings};
 

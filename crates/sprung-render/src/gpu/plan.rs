@@ -90,9 +90,25 @@ impl PartialEq for Basis {
 
 /// Which parts of a body are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Shown {
-    points: bool,
-    springs: bool,
+pub struct Shown {
+    /// Its points, as spheres.
+    pub points: bool,
+    /// Its springs, as lines or coils.
+    pub springs: bool,
+    /// Its open sheets.
+    pub cloths: bool,
+    /// Its closed skins.
+    pub skins: bool,
+}
+
+impl Shown {
+    /// Whether a surface of this kind is drawn.
+    pub fn surface(self, kind: SurfaceKind) -> bool {
+        match kind {
+            SurfaceKind::Cloth => self.cloths,
+            SurfaceKind::Skin => self.skins,
+        }
+    }
 }
 
 impl Plan {
@@ -142,22 +158,29 @@ fn is_crowded(body: &Body) -> bool {
     body.points.len() > CROWD
 }
 
-fn shown(model: &Model, appearance: &Appearance, body: usize) -> Shown {
+/// Which parts of a body are drawn, by its index in the model: what the appearance asks for, and where that is left open,
+/// what can be seen. What is drawn can be picked; so the window asks the same function.
+pub fn shown(model: &Model, appearance: &Appearance, body: usize) -> Shown {
     let has_surface = appearance.surfaces != Surfaces::Hidden
         && model.surfaces().iter().any(|surface| surface.body == body);
-    let in_detail = !(has_surface && is_crowded(&model.bodies()[body]));
-    Shown {
-        points: match appearance.points {
-            Points::Auto => in_detail,
-            Points::Spheres => true,
-            Points::Hidden => false,
-        },
-        springs: match appearance.springs {
-            Springs::Auto => in_detail,
-            Springs::Lines | Springs::Coils => true,
-            Springs::Hidden => false,
-        },
-    }
+    let in_detail = !(has_surface && model.bodies().get(body).is_some_and(is_crowded));
+    let points = match appearance.points {
+        Points::Auto => in_detail,
+        Points::Spheres => true,
+        Points::Hidden => false,
+    };
+    let springs = match appearance.springs {
+        Springs::Auto => in_detail,
+        Springs::Lines | Springs::Coils => true,
+        Springs::Hidden => false,
+    };
+    let skins = match appearance.surfaces {
+        Surfaces::Hidden => false,
+        // Inside the skin of a solid shown in detail nothing could be seen.
+        Surfaces::Auto => !(points || springs),
+        Surfaces::Filled | Surfaces::Wireframe => true,
+    };
+    Shown { points, springs, cloths: appearance.surfaces != Surfaces::Hidden, skins }
 }
 
 fn chosen_points(model: &Model, params: &Params, appearance: &Appearance, shown: &[Shown]) -> Vec<[u32; 2]> {
@@ -197,13 +220,7 @@ fn chosen_surfaces(
     let (mut parts, mut corners) = (Vec::new(), Vec::new());
     for (index, surface) in model.surfaces().iter().enumerate() {
         let shown = shown[surface.body];
-        // Inside a skin of a solid shown in detail nothing could be seen.
-        let is_shown = match (appearance.surfaces, surface.kind) {
-            (Surfaces::Hidden, _) => false,
-            (Surfaces::Auto, SurfaceKind::Skin) => !(shown.points || shown.springs),
-            _ => true,
-        };
-        if is_shown {
+        if shown.surface(surface.kind) {
             let first = corners.len() as u32;
             // Springs and edges would not lie on a coarser one.
             let is_bare = !shown.springs && appearance.surfaces != Surfaces::Wireframe;
@@ -273,7 +290,7 @@ mod tests {
     #[test]
     fn fixed_points_are_told_apart() {
         let (model, params) = model();
-        let shown = [Shown { points: true, springs: true }];
+        let shown = [Shown { points: true, springs: true, ..Shown::default() }];
         let balls = chosen_points(&model, &params, &Appearance::default(), &shown);
         assert_eq!(balls, [[0, BALL], [1, FIXED], [2, BALL]]);
     }
