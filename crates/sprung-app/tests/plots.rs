@@ -3,10 +3,13 @@
 mod common;
 
 use common::{DUST, builtin, click, play, scene, state, window};
+use egui::Key;
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use sprung::Change;
 use sprung::scene::{BUILTIN, Kind};
 use sprung_app::plots::PlotKind;
+use sprung_app::{App, SaveRequest};
 use sprung_driver::{Command, Edit, Probe};
 
 const SIZE: [f32; 2] = [1400.0, 900.0];
@@ -112,9 +115,7 @@ fn the_table_that_is_saved_holds_the_samples() {
     play(&mut window, 0.5);
     for (tab, columns) in [("Energy", 11), ("Traces", 3)] {
         click(&mut window, tab);
-        click(&mut window, "Save plot…");
-        click(&mut window, "Numbers (.csv)");
-        let request = state(&mut window).save_requests.pop().expect("something to save");
+        let request = saved(&mut window, "Numbers (.csv)");
         assert_eq!(request.name, format!("spring-{}.csv", tab.to_lowercase()));
         let text = String::from_utf8(request.bytes).expect("it is text");
         let report = state(&mut window).report.clone();
@@ -136,9 +137,7 @@ fn the_table_that_is_saved_holds_the_samples() {
     {
         for tab in ["Energy", "Traces", "Formula"] {
             click(&mut window, tab);
-            click(&mut window, "Save plot…");
-            click(&mut window, format);
-            let request = state(&mut window).save_requests.pop().expect("something to save");
+            let request = saved(&mut window, format);
             assert!(request.bytes.starts_with(begin), "{tab} {format}");
         }
     }
@@ -162,9 +161,7 @@ fn pulled_straight_down_the_spring_follows_its_formula() {
         let period = if columns == 2 { "6.31" } else { "7.7" };
         assert!(window.query_by_label_contains(&format!("formula  {period}")).is_some(), "{button}");
         assert!(window.query_by_label_contains(&format!(" 1.      {period}")).is_some(), "{button}");
-        click(&mut window, "Save plot…");
-        click(&mut window, "Numbers (.csv)");
-        let request = state(&mut window).save_requests.pop().expect("something to save");
+        let request = saved(&mut window, "Numbers (.csv)");
         let text = String::from_utf8(request.bytes).expect("it is text");
         let (mut off, mut swing) = (0.0_f64, 0.0_f64);
         for line in text.lines().skip(1) {
@@ -201,4 +198,14 @@ fn a_run_that_explodes_is_plotted_too() {
         state(&mut window).plot = kind;
         window.run_steps(3);
     }
+}
+
+/// What is saved in a format; the card that asks for a name is closed again.
+fn saved(window: &mut Harness<'static, App>, format: &str) -> SaveRequest {
+    click(window, "Save plot…");
+    click(window, format);
+    let request = state(window).save_requests.pop().expect("something to save");
+    window.key_press(Key::Escape);
+    window.run_steps(3);
+    request
 }

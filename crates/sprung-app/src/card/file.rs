@@ -16,7 +16,7 @@ use crate::state::AppState;
 enum Purpose {
     Open,
     Save,
-    /// A picture that is ready.
+    /// A picture, or the numbers of a plot, that is ready.
     Picture,
     /// A film that was recorded; the view writes it.
     Film,
@@ -31,6 +31,8 @@ pub struct FileCard {
     asks_to_replace: Option<PathBuf>,
     /// It was closed while a film waits, which is lost only if the user says so.
     asks_to_discard: bool,
+    /// The ending of what is saved, for a path that has none.
+    ending: &'static str,
     /// It has just been put up.
     is_new: bool,
 }
@@ -44,6 +46,7 @@ impl FileCard {
             dialog: None,
             asks_to_replace: None,
             asks_to_discard: false,
+            ending: ENDING,
             is_new: true,
         }
     }
@@ -56,12 +59,14 @@ impl FileCard {
 
     /// To save a picture that waits in the state.
     pub fn picture(request: &SaveRequest) -> Self {
-        Self { purpose: Purpose::Picture, path: request.name.clone(), ..Self::open() }
+        let ending =
+            ["svg", "csv"].into_iter().find(|ending| request.name.ends_with(ending)).unwrap_or("png");
+        Self { purpose: Purpose::Picture, path: request.name.clone(), ending, ..Self::open() }
     }
 
     /// To save a film that waits; its ending says as what.
     pub fn film(name: &str) -> Self {
-        Self { purpose: Purpose::Film, path: name.to_owned(), ..Self::open() }
+        Self { purpose: Purpose::Film, path: name.to_owned(), ending: "gif", ..Self::open() }
     }
 
     /// What it is called.
@@ -69,6 +74,7 @@ impl FileCard {
         match self.purpose {
             Purpose::Open => "Open a scene",
             Purpose::Save => "Save the scene",
+            Purpose::Picture if self.ending == "csv" => "Save the numbers",
             Purpose::Picture => "Save the picture",
             Purpose::Film => "Save the film",
         }
@@ -111,7 +117,13 @@ impl FileCard {
             Purpose::Open => self.open_ui(ui, state),
             Purpose::Save => self.save_ui(ui, state),
             Purpose::Picture => {
-                self.media_ui(ui, state, "pictures", &["png"], "A picture of what is seen, as PNG.")
+                let ending = self.ending;
+                let about = match ending {
+                    "csv" => "A table with a row for each sample, as CSV.",
+                    "svg" => "The plot, as SVG.",
+                    _ => "A picture of what is seen, as PNG.",
+                };
+                self.media_ui(ui, state, "files", &[ending], about)
             }
             Purpose::Film => {
                 let about = "As an animation (.gif), or as a film (.mp4), which needs ffmpeg.";
@@ -209,12 +221,7 @@ impl FileCard {
                 true
             }
             Purpose::Save | Purpose::Picture | Purpose::Film => {
-                let ending = match self.purpose {
-                    Purpose::Picture => "png",
-                    Purpose::Film => "gif",
-                    _ => ENDING,
-                };
-                let path = if path.extension().is_none() { path.with_extension(ending) } else { path };
+                let path = if path.extension().is_none() { path.with_extension(self.ending) } else { path };
                 if path.exists() && !may_replace {
                     self.asks_to_replace = Some(path);
                     return false;
