@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetupCreateNew};
 use egui::{IconData, ViewportBuilder};
 use sprung::scene::Scene;
 use sprung::{Code, Error, Result};
@@ -43,11 +44,29 @@ pub fn run(options: Options) -> Result<()> {
         .with_icon(Arc::new(icon(64)))
         .with_inner_size(SIZE)
         .with_min_inner_size(LEAST_SIZE);
-    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
+    let native = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: graphics(),
+        ..Default::default()
+    };
     let create = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(Box::new(create(options, context)?))
     };
     eframe::run_native(APP_ID, native, Box::new(create)).map_err(explain)
+}
+
+/// As egui would have it, but pictures may be as large as the adapter allows: a window across several screens is wider
+/// than the 8192 pixels that egui asks for.
+fn graphics() -> WgpuConfiguration {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    let usual = setup.device_descriptor.clone();
+    setup.device_descriptor = Arc::new(move |adapter| {
+        let mut descriptor = usual(adapter);
+        descriptor.required_limits.max_texture_dimension_2d = adapter.limits().max_texture_dimension_2d;
+        descriptor
+    });
+    WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
 }
 
 fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App> {

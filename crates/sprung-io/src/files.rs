@@ -259,6 +259,19 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// As [`read`], of an ordinary file only: a pipe or a device could keep a window waiting for ever.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_ordinary(path: &Path, most: u64) -> Result<Vec<u8>> {
+    let is_odd = std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir());
+    if is_odd {
+        let error = Error::new(Code::Unreadable, "is a pipe or a device, and must be an ordinary file");
+        return Err(error.in_file(path.display().to_string()));
+    }
+    read(path, most)
+}
+
 /// The sentence for a file that cannot be written.
 pub fn write_error(path: &Path, error: &io::Error) -> Error {
     let reason = match error.kind() {

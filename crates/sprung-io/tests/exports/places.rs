@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use sprung::Code;
-use sprung_io::PartialFile;
+use sprung_io::{PartialFile, files};
 
 use crate::common::names_in;
 
@@ -36,6 +36,17 @@ fn a_pipe_is_left_alone() {
     assert_eq!(refusal(&link), "cannot be written: it is not a regular file");
     assert!(is_pipe(&pipe) && link.is_symlink());
     assert_eq!(names_in(folder.path()), ["link.csv", "pipe.csv"]);
+}
+
+#[test]
+fn a_window_does_not_wait_for_a_pipe() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let pipe = folder.path().join("pipe.toml");
+    make_pipe(&pipe);
+    let error = files::read_ordinary(&pipe, 100).expect_err("nobody writes into it");
+    assert_eq!(error.sentence(), "is a pipe or a device, and must be an ordinary file");
+    fs::write(folder.path().join("file.toml"), "abc").expect("a file");
+    assert_eq!(files::read_ordinary(&folder.path().join("file.toml"), 100).expect("it is ordinary"), b"abc");
 }
 
 #[test]
