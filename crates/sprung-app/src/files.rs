@@ -100,7 +100,8 @@ pub struct Refused {
 /// With the file's line and field where its text is at fault.
 pub fn read_scene(path: &Path) -> Result<Source, Refused> {
     // Small as scene files are (most have less than 2 KiB), reading one does not hold up the window.
-    let bytes = sprung_io::files::read_ordinary(path, MAX_BYTES).map_err(|error| Refused { error, text: None })?;
+    let bytes =
+        sprung_io::files::read_ordinary(path, MAX_BYTES).map_err(|error| Refused { error, text: None })?;
     parse_scene(&bytes, &path.display().to_string())
 }
 
