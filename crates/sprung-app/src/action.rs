@@ -1,6 +1,6 @@
 //! Everything that a key or a button can do: the one list that menus, help and tests read.
 
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
 use crate::icon::{self, Icon};
 
@@ -249,7 +249,17 @@ pub fn pressed(context: &egui::Context) -> Vec<Action> {
     // The longest combinations first: Ctrl+Shift+Z is not Ctrl+Z.
     let count = |key: &KeyboardShortcut| u8::from(key.modifiers.shift) + u8::from(key.modifiers.command);
     keys.sort_by_key(|(key, _)| std::cmp::Reverse(count(key)));
+    // Each press counts, in the order of the presses: a slow frame may hold several of the same key.
+    let mut pressed = Vec::new();
     context.input_mut(|input| {
-        keys.into_iter().filter(|(key, _)| input.consume_shortcut(key)).map(|(_, action)| action).collect()
-    })
+        input.events.retain(|event| {
+            let Event::Key { key, modifiers, pressed: true, .. } = event else { return true };
+            let is_it =
+                |of: &KeyboardShortcut| of.logical_key == *key && modifiers.matches_logically(of.modifiers);
+            let found = keys.iter().find(|(of, _)| is_it(of));
+            pressed.extend(found.map(|(_, action)| *action));
+            found.is_none()
+        });
+    });
+    pressed
 }

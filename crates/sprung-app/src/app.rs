@@ -166,7 +166,11 @@ impl App {
             self.state.send(Command::Play(true));
         }
         self.serial = Some(opened.serial);
+        // Nothing of the last scene goes on in this one.
+        self.state.tool = Tool::Hand;
         self.state.selection = None;
+        self.state.hovered = None;
+        self.state.explain_stage = None;
         self.state.pointed_out.clear();
         self.view.frame_scene(&mut self.state);
     }

@@ -24,6 +24,9 @@ const SIZE: [f32; 2] = [1280.0, 820.0];
 /// The least it can be made, points.
 const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
 
+/// Zooms that may be stored: egui's own keys go a little further than our settings.
+const ZOOM_KEPT: std::ops::RangeInclusive<f32> = 0.2..=5.0;
+
 /// What the window begins with.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -53,7 +56,31 @@ pub fn run(options: Options) -> Result<()> {
     let create = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(Box::new(create(options, context)?))
     };
-    eframe::run_native(APP_ID, native, Box::new(create)).map_err(explain)
+    eframe::run_native_ext(APP_ID, native, fresh_context(), Box::new(create)).map_err(explain)
+}
+
+/// An empty egui context where the stored one would be of no use; else `None`, and the stored one is taken.
+///
+/// egui keeps its own zoom beside ours, and the window is made before anything of ours is asked: with a zoom of 1e9 it
+/// would need more pixels than there is memory for.
+fn fresh_context() -> Option<egui::Context> {
+    let stored = eframe::storage_dir(APP_ID)?.join("app.ron");
+    // What egui stores has a few KiB; of a file that is much longer nothing is believed.
+    let text = sprung_io::files::read(&stored, 16 << 20).map(|bytes| String::from_utf8(bytes).ok());
+    match text {
+        Ok(Some(text)) if zooms_are_sane(&text) => None,
+        // There is none yet.
+        Err(_) if !stored.exists() => None,
+        _ => Some(egui::Context::default()),
+    }
+}
+
+/// Whether every zoom in the stored text is one that a window can have.
+fn zooms_are_sane(text: &str) -> bool {
+    text.split("zoom_factor:").skip(1).all(|rest| {
+        let end = rest.find([',', ')']).unwrap_or(rest.len());
+        rest[..end].trim().parse::<f32>().is_ok_and(|zoom| ZOOM_KEPT.contains(&zoom))
+    })
 }
 
 /// As egui would have it, but for the choice of the adapter and the size of pictures: a window across several screens is
@@ -209,6 +236,22 @@ mod tests {
             let text = error.to_string();
             assert_eq!(error.code(), Code::Unsupported);
             assert!(text.contains(words) && !text.contains('\n'), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_stored_zoom_that_no_window_can_have_is_noticed() {
+        for (text, is_sane) in [
+            ("", true),
+            ("(options:(zoom_factor:1.0,zoom_with_keyboard:true))", true),
+            ("(options:(zoom_factor:1.5))", true),
+            ("(options:(zoom_factor:1e9,zoom_with_keyboard:true))", false),
+            ("(options:(zoom_factor: 0.0,))", false),
+            ("(options:(zoom_factor:NaN))", false),
+            ("zoom_factor:1.0, zoom_factor:-1", false),
+            ("zoom_factor:", false),
+        ] {
+            assert_eq!(zooms_are_sane(text), is_sane, "{text}");
         }
     }
 

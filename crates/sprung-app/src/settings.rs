@@ -11,6 +11,9 @@ use crate::state::{AppState, Shown};
 /// The name they are kept under.
 const KEY: &str = "settings";
 
+/// How much larger everything may be made.
+pub(crate) const ZOOM: std::ops::RangeInclusive<f32> = 0.5..=4.0;
+
 /// The settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -46,7 +49,23 @@ impl Default for Settings {
 impl Settings {
     /// The settings of the last time, or the first ones.
     pub fn load(storage: Option<&dyn Storage>) -> Self {
-        storage.and_then(|storage| eframe::get_value(storage, KEY)).unwrap_or_default()
+        let kept: Self = storage.and_then(|storage| eframe::get_value(storage, KEY)).unwrap_or_default();
+        kept.checked()
+    }
+
+    /// With every number where it may be: who edits the file, or a disk that fails, must not keep the window from opening.
+    fn checked(self) -> Self {
+        let usual = Self::default();
+        let within = |value: f32, low: f32, high: f32, usual: f32| {
+            if value.is_finite() { value.clamp(low, high) } else { usual }
+        };
+        Self {
+            full_scale: within(self.full_scale, 1e-9, 1e12, usual.full_scale),
+            velocity_arrows: within(self.velocity_arrows, 0.0, 1e9, usual.velocity_arrows),
+            force_arrows: within(self.force_arrows, 0.0, 1e9, usual.force_arrows),
+            zoom: within(self.zoom, *ZOOM.start(), *ZOOM.end(), usual.zoom),
+            ..self
+        }
     }
 
     /// Keeps them.
@@ -88,7 +107,6 @@ impl Settings {
 
     /// How the scene is to look.
     pub fn appearance(&self) -> Appearance {
-        let length = |value: f32| if value.is_finite() { value.clamp(0.0, 1e9) } else { 0.0 };
         Appearance {
             theme: if self.dark { Theme::Dark } else { Theme::Light },
             background: self.background,
@@ -96,9 +114,9 @@ impl Settings {
             springs: named(&self.springs, &SPRINGS),
             surfaces: named(&self.surfaces, &SURFACES),
             colour_by: named(&self.colour_by, &COLOUR_BY),
-            full_scale: length(self.full_scale).max(1e-9),
-            velocity_arrows: length(self.velocity_arrows),
-            force_arrows: length(self.force_arrows),
+            full_scale: self.full_scale,
+            velocity_arrows: self.velocity_arrows,
+            force_arrows: self.force_arrows,
             ground: self.ground,
             shadows: self.shadows,
         }
@@ -112,7 +130,7 @@ impl Settings {
 
     /// How much larger everything is.
     pub fn zoom(&self) -> f32 {
-        if self.zoom.is_finite() { self.zoom.clamp(0.5, 4.0) } else { 1.0 }
+        self.zoom
     }
 }
 
@@ -196,5 +214,24 @@ mod tests {
         assert_eq!(look.points, Default::default());
         assert!(look.full_scale > 0.0);
         assert_eq!(settings.zoom(), 1.0);
+    }
+
+    #[test]
+    fn no_number_is_taken_that_the_window_cannot_live_with() {
+        let mut storage = Memory::default();
+        for value in ["1e9", "-1e9", "1e300", "0", "NaN", "inf", "-inf", "1e-40"] {
+            let text = format!(
+                "(zoom:{value},full_scale:{value},velocity_arrows:{value},force_arrows:{value},dark:true)"
+            );
+            storage.set_string(KEY, text);
+            let settings = Settings::load(Some(&storage));
+            assert!(ZOOM.contains(&settings.zoom()), "{value}");
+            let look = settings.appearance();
+            assert_eq!(look.theme, Theme::Dark, "the rest of {value} is taken");
+            assert!((1e-9..=1e12).contains(&look.full_scale), "{value}");
+            for length in [look.velocity_arrows, look.force_arrows] {
+                assert!((0.0..=1e9).contains(&length), "{value}");
+            }
+        }
     }
 }

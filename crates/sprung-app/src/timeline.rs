@@ -19,6 +19,11 @@ const MOMENT_WIDTHS: [f32; 2] = [104.0, 94.0];
 /// Room for the memory of the recording, points.
 const MEMORY_WIDTH: f32 = 152.0;
 
+/// From these widths on, the row has room for the time of a frame and the memory, and for how far the ghost is apart:
+/// it never takes more than two lines.
+const WIDE: f32 = 860.0;
+const MEDIUM: f32 = 640.0;
+
 /// How near the cursor must be to a mark to name it, points.
 const NEAR: f32 = 5.0;
 
@@ -32,12 +37,15 @@ impl TimelineBar {
     /// Buttons, the moment, and the strip below them.
     pub fn show(&mut self, ui: &mut Ui, state: &mut AppState) {
         ui.add_space(3.0);
+        let width = ui.available_width();
         ui.horizontal_wrapped(|ui| {
             buttons(ui, state);
             moment(ui, &state.report);
-            self.speedometer.show(ui, &state.report);
-            memory(ui, &state.report.timeline);
-            compare(ui, state);
+            self.speedometer.show(ui, &state.report, width >= WIDE);
+            if width >= WIDE {
+                memory(ui, &state.report.timeline);
+            }
+            compare(ui, state, width >= MEDIUM);
         });
         strip(ui, state);
         ui.add_space(4.0);
@@ -91,13 +99,16 @@ fn seek(state: &mut AppState, step: u64) {
     }
 }
 
-fn compare(ui: &mut Ui, state: &mut AppState) {
+fn compare(ui: &mut Ui, state: &mut AppState, has_room: bool) {
     let mut on = state.report.comparison.is_some() || state.compares;
     let about = "After a change in the past, shows the run that was left as a ghost beside this one, and how far the two \
                  are apart.";
     if ui.checkbox(&mut on, "Ghost of the earlier run").on_hover_text(about).changed() {
         state.compares = on;
         state.send(Command::Compare(on));
+    }
+    if !has_room {
+        return;
     }
     if let Some(comparison) = &state.report.comparison {
         let apart = significant(format!("{:.2e}", comparison.apart).parse().unwrap_or(comparison.apart));
@@ -148,6 +159,8 @@ fn strip(ui: &mut Ui, state: &mut AppState) {
     });
     let hovered = response.hover_pos();
     response.on_hover_ui_at_pointer(|ui| {
+        // Beside the window's edge it moves aside instead of breaking its words.
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         let Some(pointer) = hovered else { return };
         let near: Vec<_> =
             timeline.marks.iter().filter(|(step, _)| (x_of(*step) - pointer.x).abs() <= NEAR).collect();

@@ -4,12 +4,12 @@
 //! reports.
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, vec2};
+use egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use sprung::Vec3;
 use sprung::scene::{BUILTIN, Kind, Scene};
-use sprung_app::{ACTIONS, Action, App, AppState, FilmClock, PLANETS, Pick, PictureSize};
+use sprung_app::{ACTIONS, Action, App, AppState, FilmClock, PLANETS, Pick, PictureSize, Tool};
 use sprung_driver::{Command, Driver, Handle, Report, Source, Trouble};
 
 type Window = Harness<'static, App>;
@@ -382,6 +382,88 @@ fn a_blow_up_is_explained_and_mended() {
     assert!(report(&window).params.dt < 0.0119, "the first fix was chosen");
     assert!(report(&window).now.time < blow_up.good_time);
     assert!(state(&window).pointed_out.is_empty());
+}
+
+#[test]
+fn enter_presses_the_button_of_the_blow_up_card_that_is_most_likely_wanted() {
+    let mut window = blown_up();
+    // A field that is being left takes its Enter for itself.
+    type_number(&mut window, "g_x", "0");
+    assert!(matches!(report(&window).trouble, Some(Trouble::BlewUp(_))));
+    window.run_steps(2);
+    window.key_press(Key::Enter);
+    window.run_steps(3);
+    assert!(report(&window).trouble.is_none() && report(&window).playing);
+    assert!(report(&window).params.dt < 0.0119, "the first fix was chosen");
+}
+
+#[test]
+fn the_card_of_a_blow_up_goes_away_once_parameters_are_changed() {
+    let mut window = blown_up();
+    type_number(&mut window, "step dt", "0.001");
+    window.run_steps(2);
+    assert!(report(&window).trouble.is_none());
+    let mut window = blown_up();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run_steps(4);
+    assert!(report(&window).params.dt < 0.0135, "it was taken back");
+    assert!(window.query_by_label("It blew up").is_none());
+    assert!(state(&window).pointed_out.is_empty());
+}
+
+#[test]
+fn each_press_counts_also_of_those_in_one_frame() {
+    let mut window = window("jelly");
+    let own = report(&window).params.dt;
+    for dt in ["0.001", "0.002", "0.003"] {
+        type_number(&mut window, "step dt", dt);
+    }
+    for _ in 0..3 {
+        for pressed in [true, false] {
+            let (key, modifiers) = (Key::Z, Modifiers::COMMAND);
+            window.event(Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+        }
+    }
+    window.run_steps(3);
+    assert_eq!(report(&window).params.dt, own);
+}
+
+#[test]
+fn a_refusal_pushes_nothing_aside() {
+    let mut window = window("jelly");
+    let place = |window: &Window| {
+        let mut fields = window.get_all_by_role_and_label(Role::TextInput, "sub-steps");
+        fields.next().expect("it is there").rect()
+    };
+    let before = place(&window);
+    type_number(&mut window, "step dt", "-1");
+    let sentence = "-1 is not allowed: step dt may be from 1e-9 to 1000 s";
+    let bubble = window.get_by_label(sentence).rect();
+    assert_eq!(place(&window), before);
+    assert!(!bubble.intersects(before), "{bubble:?} covers {before:?}");
+}
+
+#[test]
+fn another_scene_begins_with_the_hand_and_nothing_chosen() {
+    let mut window = window("jelly");
+    press(&mut window, Action::Scissors);
+    press(&mut window, Action::NextStage);
+    window.state_mut().state_mut().selection = Some(Pick::Point(3));
+    window.run_steps(2);
+    assert!(state(&window).explain_stage.is_some());
+    press(&mut window, Action::Scene(1));
+    window.run_steps(4);
+    assert_eq!(state(&window).tool, Tool::Hand);
+    assert_eq!((state(&window).selection, state(&window).explain_stage), (None, None));
+}
+
+#[test]
+fn a_small_window_keeps_the_timeline_low() {
+    for (width, most) in [(500.0, 100.0), (700.0, 100.0), (900.0, 100.0)] {
+        let window = window_of("chain", [width, 420.0]);
+        let top = window.get_by_label("To the start").rect().top();
+        assert!(420.0 - top < most, "{} at {width}", 420.0 - top);
+    }
 }
 
 #[test]

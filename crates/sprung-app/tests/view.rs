@@ -31,6 +31,38 @@ fn a_point_that_is_pulled_follows_the_hand() {
 }
 
 #[test]
+fn a_press_that_has_moved_on_within_its_frame_pulls_where_it_was_pressed() {
+    let mut harness = window("chain");
+    let start = place(&harness, 14).expect("it is seen");
+    let camera = state(&mut harness).camera;
+    hover(&mut harness, start + vec2(-200.0, 60.0));
+    let to = start + vec2(90.0, 70.0);
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+    harness.event(Event::PointerMoved(start));
+    harness.event(Event::PointerButton { pos: start, button, pressed: true, modifiers });
+    harness.event(Event::PointerMoved(to));
+    harness.run_steps(2);
+    assert_eq!(state(&mut harness).report.pull.map(|(point, _)| point), Some(14));
+    assert_eq!(state(&mut harness).camera, camera, "the scene stays");
+    release(&mut harness, to);
+}
+
+#[test]
+fn in_a_presentation_a_cursor_at_rest_points_at_nothing() {
+    let mut harness = window("spring");
+    let point = place(&harness, 1).expect("it is seen");
+    harness.key_press(Key::F11);
+    harness.run_steps(2);
+    let point = place(&harness, 1).unwrap_or(point);
+    hover(&mut harness, point);
+    assert_eq!(state(&mut harness).hovered, Some(Pick::Point(1)));
+    harness.run_steps(130);
+    assert_eq!(state(&mut harness).hovered, None);
+    hover(&mut harness, point + vec2(1.0, 0.0));
+    assert_eq!(state(&mut harness).hovered, Some(Pick::Point(1)));
+}
+
+#[test]
 fn with_shift_a_point_goes_where_the_hand_is_even_while_time_stands_still() {
     let mut harness = window("jelly");
     let start = place(&harness, 999).expect("it is seen");
@@ -433,4 +465,18 @@ fn a_jelly_in_its_plane_explains_itself_until_it_is_understood() {
     harness.get_by_label("Understood").click();
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("the plane is a spring too").is_none());
+}
+
+#[test]
+fn what_begins_in_its_plane_or_falls_through_is_not_as_it_should() {
+    let mut harness = window("jelly");
+    // Far below a plane that was just put there.
+    let mut planes = state(&mut harness).report.params.planes.clone();
+    planes[0].point.y += 40.0;
+    let change = vec![sprung::Change::Planes(planes)];
+    state(&mut harness).edit(sprung_driver::Edit::new("plane", change));
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("as it should").is_none());
+    play(&mut harness, 20);
+    assert!(harness.query_by_label_contains("as it should").is_none());
 }

@@ -1,7 +1,9 @@
 //! The card for a simulation that blew up: what happened, where, why, and what mends it.
 
-use egui::{Context, Rect, RichText, Ui};
-use sprung::{BlowUp, Cause, significant};
+use std::sync::Arc;
+
+use egui::{Context, Key, Modifiers, Rect, RichText, Ui};
+use sprung::{BlowUp, Cause, Params, significant};
 use sprung_driver::{Command, Fix, Trouble};
 
 use super::error::capital;
@@ -17,6 +19,10 @@ const REWIND: f64 = 2.0;
 #[derive(Default)]
 pub struct BlowUpCard {
     about: Option<BlowUp>,
+    /// The parameters that it came from.
+    params: Option<Arc<Params>>,
+    /// Whether something had the keys in the last frame: Enter was meant for that.
+    had_focus: bool,
     fix: Option<Fix>,
     /// What it points out in the scene.
     pointed_out: Vec<Pick>,
@@ -30,8 +36,15 @@ impl BlowUpCard {
             _ => None,
         };
         if about == self.about.as_ref() {
+            // Under other parameters, causes and fixes are others, too: whoever changes them has mended it by hand.
+            let now = &state.report.params;
+            if self.about.is_some() && self.params.as_ref().is_some_and(|params| !is_same(params, now)) {
+                self.params = None;
+                state.send(Command::Dismiss);
+            }
             return;
         }
+        self.params = about.map(|_| state.report.params.clone());
         if state.pointed_out == self.pointed_out {
             state.pointed_out.clear();
         }
@@ -63,6 +76,7 @@ impl BlowUpCard {
             ui.add_space(6.0);
             self.ways_on(ui, state);
         });
+        self.had_focus = context.memory(|memory| memory.focused().is_some());
         if closed {
             state.send(Command::Dismiss);
         }
@@ -108,7 +122,10 @@ impl BlowUpCard {
             let rewind = primary(ui, "Rewind two seconds and go on");
             let about =
                 "Back by two seconds of simulated time, as far as they are recorded, and on from there.";
-            if ui.add(rewind).on_hover_text(about).clicked() {
+            let entered = !self.had_focus
+                && ui.memory(|memory| memory.focused().is_none())
+                && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));
+            if ui.add(rewind).on_hover_text(about).clicked() || entered {
                 go_on = Some(Command::RewindAndGoOn(REWIND));
             }
             if ui.button("Go on from here").on_hover_text("On from the last good state.").clicked() {
@@ -123,6 +140,13 @@ impl BlowUpCard {
             state.send(command);
         }
     }
+}
+
+/// Whether the same would happen again: hands come and go without changing that.
+fn is_same(a: &Arc<Params>, b: &Arc<Params>) -> bool {
+    let without_hands =
+        |params: &Params| Params { grabs: Vec::new(), carried: Default::default(), ..params.clone() };
+    Arc::ptr_eq(a, b) || without_hands(a) == without_hands(b)
 }
 
 fn heading(ui: &mut Ui, text: &str) {

@@ -1,5 +1,7 @@
 //! The card for what could not be done: what was found, where, and what would mend it; for files with the very line.
 
+use std::path::Path;
+
 use egui::{Context, RichText, Ui};
 use sprung::Error;
 
@@ -14,15 +16,15 @@ pub const TITLE: &str = "That did not work";
 /// Most characters of a line that are shown around the fault.
 const WIDTH: usize = 72;
 
+/// Words that sentences begin with which say something of a file.
+const VERBS: [&str; 7] = ["is", "are", "has", "does", "cannot", "must", "needs"];
+
 /// The card; gives whether it is to be closed. `text` is that of the file, where it is known.
 pub fn show(context: &Context, error: &Error, text: Option<&str>) -> bool {
     modal(context, "error card", TITLE, 560.0, |ui| {
         let colour = Meaning::Bad.colour(ui.visuals());
         let place = error.place();
-        let sentence = match &place.field {
-            Some(field) => format!("{field} {}", error.sentence()),
-            None => error.sentence().to_owned(),
-        };
+        let sentence = sentence(error);
         ui.horizontal_top(|ui| {
             icon::label(ui, icon::WARNING, colour);
             ui.add(egui::Label::new(RichText::new(capital(&sentence)).color(colour)).wrap());
@@ -53,6 +55,20 @@ pub fn show(context: &Context, error: &Error, text: Option<&str>) -> bool {
         }
         button.clicked()
     })
+}
+
+/// What was found, with its subject: the field it is about, or the file where it says something of that.
+fn sentence(error: &Error) -> String {
+    let (place, sentence) = (error.place(), error.sentence());
+    let is_without_subject = sentence.split(' ').next().is_some_and(|word| VERBS.contains(&word));
+    match (&place.field, &place.file) {
+        (Some(field), _) => format!("{field} {sentence}"),
+        (None, Some(file)) if is_without_subject => {
+            let name = Path::new(file).file_name().map_or_else(|| file.into(), |name| name.to_string_lossy());
+            format!("{name} {sentence}")
+        }
+        _ => sentence.to_owned(),
+    }
 }
 
 /// The line at fault, with the ones around it and a caret under the column.
@@ -115,6 +131,17 @@ mod tests {
         let expected =
             [(Some(1), "a"), (Some(2), "b"), (Some(3), "dt = -1"), (None, "     ^"), (Some(4), "c")];
         assert_eq!(rows, expected.map(|(number, text)| (number, text.to_owned())));
+    }
+
+    #[test]
+    fn every_sentence_has_a_subject() {
+        let large = Error::new(sprung::Code::TooLarge, "is larger than the 64 MiB allowed");
+        assert_eq!(
+            sentence(&large.in_file("some/where/big.toml")),
+            "big.toml is larger than the 64 MiB allowed"
+        );
+        let display = Error::new(sprung::Code::Unsupported, "there is no display").in_file("x.toml");
+        assert_eq!(sentence(&display), "there is no display");
     }
 
     #[test]

@@ -4,7 +4,10 @@
 use std::ops::RangeInclusive;
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Align, Id, Key, Layout, RichText, Slider, SliderClamping, TextEdit, TextStyle, Ui, vec2};
+use egui::{
+    Align, Area, Frame, Id, Key, Layout, Order, Rect, RichText, Slider, SliderClamping, TextEdit, TextStyle,
+    Ui, vec2,
+};
 use sprung::significant;
 
 use crate::icon::{self, IconButton};
@@ -18,6 +21,9 @@ const FIELD_WIDTH: f32 = 72.0;
 const UNIT_WIDTH: f32 = 42.0;
 /// Width of the button that goes back to the scene's own value, points.
 const OWN_WIDTH: f32 = 30.0;
+
+/// Room for why a number is refused, points.
+const BUBBLE_WIDTH: f32 = 320.0;
 
 /// How a slider divides its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +80,7 @@ impl Number<'_> {
     pub fn show(&self, ui: &mut Ui, value: f64, own: Option<f64>) -> Option<Asked> {
         let id = ui.make_persistent_id(("number", self.name));
         let mut asked = None;
-        ui.horizontal(|ui| {
+        let row = ui.horizontal(|ui| {
             let name = self.name_label(ui);
             let fixed = FIELD_WIDTH + UNIT_WIDTH + OWN_WIDTH + 3.0 * ui.spacing().item_spacing.x;
             ui.spacing_mut().slider_width = (ui.available_width() - fixed).max(50.0);
@@ -93,15 +99,23 @@ impl Number<'_> {
                 ui.data_mut(|data| data.remove_temp::<Typing>(id));
             }
         }
-        self.refusal(ui, id);
+        self.refusal(ui, id, row.response.rect);
         asked
     }
 
-    fn refusal(&self, ui: &mut Ui, id: Id) {
+    /// Why what was typed is refused, in a bubble: it pushes nothing aside. Beside the row where there is room, else below.
+    fn refusal(&self, ui: &Ui, id: Id, row: Rect) {
         let refused = ui.data(|data| data.get_temp::<Typing>(id)).and_then(|typing| typing.refused);
-        if let Some(sentence) = refused {
-            ui.label(RichText::new(sentence).color(Meaning::Bad.colour(ui.visuals())));
-        }
+        let Some(sentence) = refused.filter(|_| ui.is_rect_visible(row)) else { return };
+        let is_beside = row.right() + BUBBLE_WIDTH < ui.ctx().content_rect().right();
+        let corner = if is_beside { row.right_top() + vec2(16.0, -4.0) } else { row.left_bottom() };
+        let bubble = Area::new(id.with("refusal")).order(Order::Foreground).interactable(false);
+        bubble.fixed_pos(corner).show(ui.ctx(), |ui| {
+            Frame::popup(ui.style()).show(ui, |ui| {
+                ui.set_max_width(BUBBLE_WIDTH - 40.0);
+                ui.label(RichText::new(sentence).color(Meaning::Bad.colour(ui.visuals())));
+            });
+        });
     }
 
     /// Reads what was typed.

@@ -10,6 +10,12 @@ use crate::theme::Meaning;
 /// Below this share of the speed asked for, it is said that the machine cannot keep up.
 const KEEPS_UP: f64 = 0.95;
 
+/// A window that draws its pictures this much apart is what is slow, unless the steps fill the time, s.
+const SLOW_PICTURE: f64 = 0.05;
+
+/// Share of the time that the steps must take to be what is slow.
+const STEPS_FILL: f64 = 0.7;
+
 /// Frames over which the time of one is averaged.
 const AVERAGED: f32 = 30.0;
 
@@ -27,21 +33,24 @@ pub struct Speedometer {
 }
 
 impl Speedometer {
-    /// Speed, time of a frame, and steps in a second.
-    pub fn show(&mut self, ui: &mut Ui, report: &Report) {
+    /// Speed; where there is room, time of a frame and steps in a second.
+    pub fn show(&mut self, ui: &mut Ui, report: &Report, has_room: bool) {
         let frame = ui.input(|input| input.unstable_dt);
         self.frame += (frame - self.frame) * if self.frame == 0.0 { 1.0 } else { 1.0 / AVERAGED };
-        let speed = speed_text(report);
+        let speed = speed_text(report, self.frame.into());
         let colour = match speed.keeps_up {
             true => ui.visuals().weak_text_color(),
             false => Meaning::Warn.colour(ui.visuals()),
         };
         fixed_width(ui, SPEED_WIDTH, |ui| {
             ui.label(RichText::new(speed.text).monospace().color(colour)).on_hover_text(
-                "Simulated seconds for each second. Where a step takes longer than it may, time goes slower: the steps stay \
-                 as long as they are, and the motion right.",
+                "Simulated seconds for each second. Where a step, or drawing a picture, takes longer than it may, time goes \
+                 slower: the steps stay as long as they are, and the motion right.",
             );
         });
+        if !has_room {
+            return;
+        }
         let steps = if report.playing { report.speed / report.params.dt } else { 0.0 };
         let text = format!("{:>5.1} ms/frame {steps:>6.0} steps/s", 1e3 * self.frame);
         fixed_width(ui, STEPS_WIDTH, |ui| {
@@ -57,7 +66,8 @@ struct Speed {
     keeps_up: bool,
 }
 
-fn speed_text(report: &Report) -> Speed {
+/// `picture` is the time from one picture of the window to the next, s.
+fn speed_text(report: &Report, picture: f64) -> Speed {
     if let Some(busy) = &report.busy {
         return Speed { text: format!("{busy} …"), keeps_up: true };
     }
@@ -76,8 +86,18 @@ fn speed_text(report: &Report) -> Speed {
     if report.speed == 0.0 || report.speed >= KEEPS_UP * target {
         return Speed { text, keeps_up: true };
     }
-    let step = significant((1e5 * report.seconds_per_step).round() / 1e2);
-    Speed { text: format!("{shown} × real time: {step} ms a step"), keeps_up: false }
+    let millis = |seconds: f64| significant((1e5 * seconds).round() / 1e2);
+    // Of each second, what the steps would take at the speed asked for.
+    let filled = report.seconds_per_step * target / report.params.dt;
+    let why = if filled >= STEPS_FILL {
+        format!(": {} ms a step", millis(report.seconds_per_step))
+    } else if picture >= SLOW_PICTURE {
+        format!(": {:.0} ms a picture", 1e3 * picture)
+    } else {
+        // Neither is slow: something else has the processor.
+        String::new()
+    };
+    Speed { text: format!("{:<18}", format!("{shown} × real time{why}")), keeps_up: false }
 }
 
 #[cfg(test)]
@@ -93,19 +113,25 @@ mod tests {
         let source = Source { name: "spring".to_owned(), scene };
         let mut handle = Handle::inline(Driver::new(source).expect("it can be built"));
         let mut report = (*handle.report()).clone();
-        assert_eq!(speed_text(&report).text.trim(), "paused");
+        assert_eq!(speed_text(&report, 0.02).text.trim(), "paused");
         report.playing = true;
-        report.seconds_per_step = 0.0123456;
-        for (speed, pace, text, keeps_up) in [
-            (1.0, Pace::RealTime, "1.00 × real time", true),
-            (0.42, Pace::RealTime, "0.42 × real time: 12.35 ms a step", false),
-            (0.5, Pace::Slow(2.0), "0.50 × real time", true),
-            (0.01, Pace::Slow(100.0), "0.0100 × real time", true),
-            (1.0, Pace::Frames, "1.00 × real time: 12.35 ms a step", false),
+        let dt = report.params.dt;
+        let slow = 12.3456 * dt;
+        let text_of = |seconds: f64| format!("{} ms a step", significant((1e5 * seconds).round() / 1e2));
+        for (speed, pace, step, picture, text, keeps_up) in [
+            (1.0, Pace::RealTime, slow, 0.02, "1.00 × real time".to_owned(), true),
+            (0.42, Pace::RealTime, slow, 0.02, format!("0.42 × real time: {}", text_of(slow)), false),
+            (0.5, Pace::Slow(2.0), slow, 0.02, "0.50 × real time".to_owned(), true),
+            (0.01, Pace::Slow(100.0), slow, 0.02, "0.0100 × real time".to_owned(), true),
+            // Steps that leave most of the time free are not what is slow.
+            (0.42, Pace::RealTime, 0.01 * dt, 0.3, "0.42 × real time: 300 ms a picture".to_owned(), false),
+            (0.42, Pace::RealTime, 0.01 * dt, 0.02, "0.42 × real time".to_owned(), false),
+            // Both are slow: without the steps, the pictures would come in time.
+            (0.42, Pace::RealTime, slow, 0.3, format!("0.42 × real time: {}", text_of(slow)), false),
         ] {
-            (report.speed, report.pace) = (speed, pace);
-            let found = speed_text(&report);
-            assert_eq!((found.text.trim(), found.keeps_up), (text, keeps_up));
+            (report.speed, report.pace, report.seconds_per_step) = (speed, pace, step);
+            let found = speed_text(&report, picture);
+            assert_eq!((found.text.trim(), found.keeps_up), (text.as_str(), keeps_up));
         }
     }
 }

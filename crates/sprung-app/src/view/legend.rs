@@ -9,6 +9,8 @@ use crate::state::AppState;
 
 /// Size of the bar with the colours.
 const BAR: egui::Vec2 = egui::vec2(200.0, 12.0);
+/// Size of the whole legend.
+pub const SIZE: egui::Vec2 = vec2(BAR.x + 24.0, 46.0);
 /// Pieces of one colour in it.
 const PIECES: usize = 64;
 
@@ -61,7 +63,7 @@ impl Legend {
             return None;
         }
         let ink = ui.visuals().text_color();
-        let whole = Rect::from_min_size(corner - vec2(0.0, 46.0), vec2(BAR.x + 24.0, 46.0));
+        let whole = Rect::from_min_size(corner - vec2(0.0, SIZE.y), SIZE);
         let bar = Rect::from_min_size(whole.min + vec2(0.0, 18.0), BAR);
         let response =
             ui.interact(bar.expand(4.0), ui.scope_id().with("colour scale"), Sense::click_and_drag());

@@ -269,12 +269,22 @@ impl View {
         if let Some(reading) = state.selection.and_then(|pick| reading::Reading::of(&state.report, pick)) {
             overlay::selection(ui, rect, &reading);
         }
-        overlay::axes(ui, rect, &state.camera);
+        let room = overlay::room(rect);
+        if room.axes {
+            overlay::axes(ui, rect, &state.camera);
+        }
         let corner = overlay::legend_corner(rect);
-        let legend = self.legend.show(ui, corner, state);
-        overlay::keys(ui, rect, legend.map_or(corner.y, |legend| legend.min.y), state);
+        let mut left = room.legend.then(|| self.legend.show(ui, corner, state)).flatten();
+        let below = left.map_or(corner.y, |legend| legend.min.y);
+        let top = overlay::keys(ui, rect, below, state);
+        if top < below {
+            let written = egui::Rect::from_min_max(egui::pos2(corner.x, top), corner);
+            let written =
+                egui::Rect::from_min_size(written.min, egui::vec2(legend::SIZE.x, written.height()));
+            left = Some(left.map_or(written, |legend| legend.union(written)));
+        }
         let extent = self.motion.map_or(1.0, |(_, motion)| motion.grown(0.0).size().max_element());
-        overlay::notes(ui, rect, state, (&self.drawn.1, extent), &mut self.notes);
+        overlay::notes(ui, rect, state, (&self.drawn.1, extent), left, &mut self.notes);
     }
 }
 

@@ -14,6 +14,19 @@ use crate::state::{AppState, Tool};
 const EDGE: f32 = 14.0;
 /// A depth below a plane is worth a note from this share of the scene's size on.
 const DEEP: f32 = 0.02;
+/// A depth is as it should be up to this multiple of what the weight alone presses in: what lands goes deeper for a
+/// moment.
+const AS_IT_SHOULD: f32 = 2.5;
+/// Before this moment nothing has come to lie anywhere: what is in the plane was put there, s.
+const BEGINNING: f64 = 0.25;
+/// A note needs at least this width, points; wider than the second it is hard to read.
+const NOTE_WIDTHS: [f32; 2] = [200.0, 420.0];
+/// Room between what lies side by side at the bottom.
+const APART: f32 = 12.0;
+/// Width that the axes and the scale need at the bottom right, and their height.
+const AXES: Vec2 = vec2(104.0, 96.0);
+/// Room that legend and axes leave above them for the time, and for the scene.
+const FREE_ABOVE: f32 = 90.0;
 /// Points looked at for that; of more, an even selection.
 const POINTS_SAMPLED: usize = 20_000;
 /// Up to this many points are labelled with their numbers.
@@ -201,7 +214,9 @@ pub fn velocity_ink(ui: &Ui) -> Color32 {
 }
 
 /// What the arrows and the ghost are, above the colour legend at the bottom left.
-pub fn keys(ui: &Ui, view: Rect, below: f32, state: &AppState) {
+///
+/// Gives the upper edge of what it wrote.
+pub fn keys(ui: &Ui, view: Rect, below: f32, state: &AppState) -> f32 {
     let mut lines: Vec<(Color32, String)> = Vec::new();
     let appearance = &state.appearance;
     if appearance.velocity_arrows > 0.0 {
@@ -216,6 +231,8 @@ pub fn keys(ui: &Ui, view: Rect, below: f32, state: &AppState) {
         let text = format!("the earlier run: at most {} m apart", steady(ghost.apart));
         lines.push((ink(ui, 0x6d_7f_99, 0xa9_bb_d2), text));
     }
+    let top =
+        below - 21.0 * f32::from(u8::from(!lines.is_empty())) - 18.0 * lines.len().saturating_sub(1) as f32;
     for (index, (colour, text)) in lines.into_iter().rev().enumerate() {
         let y = below - 12.0 - 18.0 * index as f32;
         let begin = pos2(view.min.x + EDGE, y);
@@ -224,6 +241,7 @@ pub fn keys(ui: &Ui, view: Rect, below: f32, state: &AppState) {
         let ink = ui.visuals().text_color();
         painter.text(begin + vec2(28.0, 0.0), Align2::LEFT_CENTER, text, FontId::proportional(12.5), ink);
     }
+    top
 }
 
 /// The lower left corner of the legend.
@@ -231,14 +249,50 @@ pub fn legend_corner(view: Rect) -> Pos2 {
     pos2(view.min.x + EDGE, view.max.y - EDGE)
 }
 
-/// Notes at the bottom, in the middle: what one may wonder about.
+/// What there is room for at the bottom of the view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Room {
+    /// The legend of the colours.
+    pub legend: bool,
+    /// Axes and scale.
+    pub axes: bool,
+}
+
+/// What fits into a view without covering anything else.
+pub fn room(view: Rect) -> Room {
+    let is_high = view.height() >= AXES.y + FREE_ABOVE;
+    let legend = super::legend::SIZE.x + AXES.x + 2.0 * EDGE + APART;
+    Room { legend: is_high && view.width() >= legend, axes: is_high && view.width() >= AXES.x + 2.0 * EDGE }
+}
+
+/// Where a note may lie: between legend and axes if it is wide enough there, else above both. Its lower edge, middle and
+/// width; `None` if there is no room. `left` is the legend with the keys above it.
+fn note_place(view: Rect, left: Option<Rect>) -> Option<(Pos2, f32)> {
+    let room = room(view);
+    let from = left.map_or(view.min.x + EDGE, |left| left.max.x + APART);
+    let to = view.max.x - EDGE - if room.axes { AXES.x } else { 0.0 };
+    let [least, most] = NOTE_WIDTHS;
+    // Between them it stands in the middle of the view, if it can.
+    if to - from >= 0.6 * most {
+        let width = most.min(to - from);
+        let middle = view.center().x.clamp(from + 0.5 * width, to - 0.5 * width);
+        return Some((pos2(middle, view.max.y - EDGE), width));
+    }
+    let width = most.min(view.width() - 2.0 * EDGE);
+    let below = left.map_or(view.max.y - EDGE, |left| left.min.y - APART);
+    let below = if room.axes { below.min(view.max.y - EDGE - AXES.y - APART) } else { below };
+    (width >= least).then(|| (pos2(view.center().x, below), width))
+}
+
+/// Notes at the bottom: what one may wonder about.
 ///
-/// `extent` is the size of the scene, m.
+/// `extent` is the size of the scene, m; `left` is the legend with the keys above it, which no note covers.
 pub fn notes(
     ui: &mut Ui,
     view: Rect,
     state: &mut AppState,
     (drawn, extent): (&Drawn, f32),
+    left: Option<Rect>,
     notes: &mut Notes,
 ) {
     let report = state.report.clone();
@@ -246,54 +300,81 @@ pub fn notes(
     let sunk = (notes.plane_read != Some(serial)).then(|| sunk(&report, extent)).flatten();
     let covered = drawn.covered_springs();
     notes.place = None;
-    if sunk.is_none() && covered == 0 {
+    let text = match sunk {
+        Some(Sunk { depth, stiffness }) => format!(
+            "Sunk {} m into the plane, as it should: the plane is a spring too. It pushes every point below it with \
+             k_c = {} N for each metre.",
+            steady(depth.into()),
+            sprung::significant(stiffness.into())
+        ),
+        None if covered > 0 => format!("{} springs lie in the surface and are not drawn", thousands(covered)),
+        None => return,
+    };
+    let Some((bottom, width)) = note_place(view, left) else { return };
+    let galley =
+        ui.painter().layout(text, FontId::proportional(12.5), ui.visuals().text_color(), width - 18.0);
+    let links = if sunk.is_some() { ui.spacing().interact_size.y + ui.spacing().item_spacing.y } else { 0.0 };
+    let size = vec2(width, galley.size().y + links + 12.0);
+    let rect = Rect::from_min_size(bottom - vec2(0.5 * width, size.y), size);
+    // In a view that low the scene is worth more than the note.
+    if rect.min.y < view.min.y + 0.5 * FREE_ABOVE {
         return;
     }
-    let width = (view.width() - 560.0).clamp(240.0, 420.0);
-    let height = if sunk.is_some() { 86.0 } else { 30.0 };
-    let corner = pos2(view.center().x - 0.5 * width, view.max.y - EDGE - height);
-    let rect = Rect::from_min_size(corner, vec2(width, height));
     let place = at(ui, rect, Align2::CENTER_TOP, |ui| {
         let shown = plate(ui).show(ui, |ui| {
-            ui.set_max_width(width);
-            if let Some((depth, stiffness)) = sunk {
-                let (depth, stiffness) = (steady(depth.into()), sprung::significant(stiffness.into()));
-                let text = format!(
-                    "Sunk {depth} m into the plane, as it should: the plane is a spring too. It pushes every point below it \
-                     with k_c = {stiffness} N for each metre."
-                );
-                ui.add(egui::Label::new(RichText::new(text).size(12.5)).selectable(false).wrap());
-                ui.horizontal(|ui| {
-                    ui.spacing_mut().item_spacing.x = 16.0;
-                    if ui.link("How it works").clicked() && !state.shown.explain {
-                        state.act(Action::Explain);
-                    }
-                    if ui.link("Understood").on_hover_text("Puts this note away").clicked() {
-                        notes.plane_read = Some(serial);
-                    }
-                });
-            } else {
-                let text = format!("{} springs lie in the surface and are not drawn", thousands(covered));
-                ui.add(egui::Label::new(RichText::new(text).size(12.5)).selectable(false));
+            ui.set_max_width(width - 16.0);
+            ui.add(egui::Label::new(galley).selectable(false));
+            if sunk.is_none() {
+                return;
             }
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 16.0;
+                if ui.link("How it works").clicked() && !state.shown.explain {
+                    state.act(Action::Explain);
+                }
+                if ui.link("Understood").on_hover_text("Puts this note away").clicked() {
+                    notes.plane_read = Some(serial);
+                }
+            });
         });
         shown.response.rect
     });
     notes.place = Some(place);
 }
 
-/// How deep the deepest free point is below a plane, m, and that plane's stiffness, if it is worth a word.
-fn sunk(report: &Report, extent: f32) -> Option<(f32, f32)> {
-    if matches!(report.trouble, Some(Trouble::BlewUp(_))) {
+/// How deep the deepest point is below a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sunk {
+    /// m.
+    depth: f32,
+    /// The plane's, N/m.
+    stiffness: f32,
+}
+
+/// How deep the deepest free point is below a plane, if it is worth a word and is what the weight presses it in: not at the
+/// beginning of a scene that begins in its plane, not while something falls through, not where nothing is as it should be.
+fn sunk(report: &Report, extent: f32) -> Option<Sunk> {
+    if matches!(report.trouble, Some(Trouble::BlewUp(_))) || report.now.time < BEGINNING {
         return None;
     }
-    let positions = &report.now.positions;
-    let stride = positions.len().div_ceil(POINTS_SAMPLED).max(1);
-    let deepest = report.params.planes.iter().map(|plane| {
-        let depths = positions.iter().step_by(stride).map(|&position| plane.depth(position));
-        (depths.fold(0.0, f32::max), plane.stiffness)
+    let params = &report.params;
+    let stride = report.now.positions.len().div_ceil(POINTS_SAMPLED).max(1);
+    let free = || {
+        let moments = report.now.positions.iter().enumerate().step_by(stride);
+        moments.filter(|(point, _)| !params.is_fixed(*point))
+    };
+    let mass: f32 = free().map(|(point, _)| params.point_mass.get(point).copied().unwrap_or(0.0)).sum();
+    let found = params.planes.iter().filter_map(|plane| {
+        let depths = || free().map(|(_, &position)| plane.depth(position));
+        let depth = depths().fold(0.0, f32::max);
+        // Those that share the weight: the others are hardly in.
+        let carrying = depths().filter(|&each| depth > 0.0 && each >= 0.5 * depth).count();
+        let weight = mass * params.gravity.dot(plane.normal).abs();
+        let at_rest = weight / (plane.stiffness * carrying as f32);
+        let is_as_it_should = at_rest.is_finite() && depth <= AS_IT_SHOULD * at_rest;
+        (depth > DEEP * extent && is_as_it_should).then_some(Sunk { depth, stiffness: plane.stiffness })
     });
-    deepest.filter(|(depth, _)| *depth > DEEP * extent).max_by(|a, b| a.0.total_cmp(&b.0))
+    found.max_by(|a, b| a.depth.total_cmp(&b.depth))
 }
 
 /// The numbers of points, where there are few.
@@ -355,6 +436,24 @@ pub fn thousands(count: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn notes_cover_neither_legend_nor_axes() {
+        for width in (120..2000).step_by(7) {
+            let view = Rect::from_min_size(pos2(50.0, 20.0), vec2(width as f32, 500.0));
+            let corner = legend_corner(view);
+            let size = super::super::legend::SIZE;
+            let legend = Rect::from_min_size(corner - vec2(0.0, size.y), size);
+            let room = room(view);
+            let legend = room.legend.then_some(legend);
+            let Some((bottom, width)) = note_place(view, legend) else { continue };
+            let note = Rect::from_min_size(bottom - vec2(0.5 * width, 80.0), vec2(width, 80.0));
+            assert!(view.contains_rect(note), "{note:?} in {view:?}");
+            assert!(legend.is_none_or(|legend| !legend.intersects(note)), "{note:?} in {view:?}");
+            let axes = Rect::from_min_max(view.max - AXES - vec2(EDGE, EDGE), view.max).shrink(1.0);
+            assert!(!room.axes || !axes.intersects(note), "{note:?} in {view:?}");
+        }
+    }
 
     #[test]
     fn scales_are_round() {

@@ -15,6 +15,9 @@ use crate::state::{AppState, Pick, Tool};
 /// From so far below the view's upper edge on, tooltips find room above the cursor, points.
 const ROOM_FOR_TOOLTIP: f32 = 200.0;
 
+/// In a presentation, a cursor that has rested so long points at nothing, s.
+const RESTS: f64 = 2.0;
+
 /// The scene as it is seen in this frame.
 pub struct Eye<'a> {
     /// The view's upper left corner in the window.
@@ -67,6 +70,8 @@ pub struct Pointer {
     serial: u64,
     /// Where the pointer was last, from the view's corner.
     cursor: Vec2,
+    /// When it moved last, s; `None` before it has.
+    moved: Option<f64>,
 }
 
 impl Pointer {
@@ -87,11 +92,17 @@ impl Pointer {
             self.doing = Doing::Nothing;
         }
         let position = ui.input(|input| input.pointer.interact_pos());
-        let moved = position.map_or(Vec2::ZERO, |position| {
+        let mut moved = position.map_or(Vec2::ZERO, |position| {
             let before = std::mem::replace(&mut self.cursor, eye.place(position));
             self.cursor - before
         });
-        self.press(ui, response, state, eye);
+        if moved != Vec2::ZERO {
+            self.moved = Some(ui.input(|input| input.time));
+        }
+        if let Some(pressed) = self.press(ui, response, state, eye) {
+            // On the way to the press, nothing was held yet.
+            moved = self.cursor - pressed;
+        }
         let frame_all = self.click(ui, response, state, eye);
         self.go_on(ui, state, eye, moved);
         self.wheel(ui, response, state, eye);
@@ -106,10 +117,14 @@ impl Pointer {
         }
     }
 
-    fn press(&mut self, ui: &Ui, response: &Response, state: &mut AppState, eye: &Eye<'_>) {
+    /// Takes hold of what a press is on; gives where that was. In a slow window the pointer may have moved on since, in the
+    /// same frame.
+    fn press(&mut self, ui: &Ui, response: &Response, state: &mut AppState, eye: &Eye<'_>) -> Option<Vec2> {
         if !response.is_pointer_button_down_on() {
-            return;
+            return None;
         }
+        let origin = ui.input(|input| input.pointer.press_origin());
+        let pressed = origin.map_or(self.cursor, |origin| eye.place(origin));
         let (primary, aside, modifiers, now) = ui.input(|input| {
             let pointer = &input.pointer;
             let aside = pointer.secondary_pressed() || pointer.button_pressed(PointerButton::Middle);
@@ -119,17 +134,18 @@ impl Pointer {
             self.let_go(state);
             self.doing = Doing::Pan;
         } else if primary {
-            let picked = eye.pick(state, self.cursor, reach(ui));
+            let picked = eye.pick(state, pressed, reach(ui));
             self.doing = match (state.tool, picked) {
                 _ if modifiers.alt => Doing::Orbit,
-                (Tool::Scissors, _) => Doing::Cut(Cut::begin(self.cursor)),
+                (Tool::Scissors, _) => Doing::Cut(Cut::begin(pressed)),
                 (Tool::Hand, Some(Pick::Point(point))) => {
-                    Doing::Press(Press { point, cursor: self.cursor, since: now })
+                    Doing::Press(Press { point, cursor: pressed, since: now })
                 }
                 _ if modifiers.shift => Doing::Pan,
                 _ => Doing::Orbit,
             };
         }
+        (primary || aside).then_some(pressed)
     }
 
     fn go_on(&mut self, ui: &Ui, state: &mut AppState, eye: &Eye<'_>, moved: Vec2) {
@@ -230,7 +246,8 @@ impl Pointer {
     fn hover(&mut self, ui: &Ui, response: &Response, state: &mut AppState, eye: &Eye<'_>) {
         let place = ui.input(|input| input.pointer.latest_pos());
         let on_note = eye.covered.zip(place).is_some_and(|(note, place)| note.contains(place));
-        let is_here = response.contains_pointer() && !on_note && !self.is_busy();
+        let rests = state.shown.presentation && self.rests(ui);
+        let is_here = response.contains_pointer() && !on_note && !self.is_busy() && !rests;
         let picked = if is_here { eye.pick(state, self.cursor, reach(ui)) } else { None };
         state.hovered = match &self.doing {
             Doing::Press(Press { point, .. }) | Doing::Pull(Hand { point, .. }) => Some(Pick::Point(*point)),
@@ -250,12 +267,25 @@ impl Pointer {
         }
     }
 
+    /// Whether the cursor has lain still for a while. If not, the window looks again when it will have.
+    fn rests(&self, ui: &Ui) -> bool {
+        let Some(moved) = self.moved else { return true };
+        let left = RESTS - (ui.input(|input| input.time) - moved);
+        if left > 0.0 {
+            ui.ctx().request_repaint_after(web_time::Duration::from_secs_f64(left));
+        }
+        left <= 0.0
+    }
+
     /// The tooltip of what the cursor is on, unless something is being done.
     pub fn tooltip(&self, ui: &Ui, response: &Response, state: &AppState) {
         let is_menu_open = egui::Popup::is_any_open(ui.ctx());
         let Some(hovered) = state.hovered.filter(|_| !self.is_busy() && !is_menu_open) else { return };
         let Some(reading) = reading::Reading::of(&state.report, hovered) else { return };
         let hint = match (state.tool, hovered) {
+            (Tool::Hand, Pick::Point(point)) if is_pinned(state, point) => {
+                "drag: carry \u{b7} double-click: free"
+            }
             (Tool::Hand, Pick::Point(_)) => "drag: pull \u{b7} Shift: carry \u{b7} double-click: pin",
             (Tool::Hand, Pick::Spring(_)) => "click: keep this in view",
             (Tool::Scissors, _) => "click, or drag across springs: cut",
@@ -278,9 +308,13 @@ impl Pointer {
     }
 }
 
+fn is_pinned(state: &AppState, point: usize) -> bool {
+    state.report.params.point_pinned.get(point).copied().unwrap_or(false)
+}
+
 /// Pins a point that is free, and frees one that is pinned.
 fn toggle_pin(state: &mut AppState, point: usize) {
-    let pinned = state.report.params.point_pinned.get(point).copied().unwrap_or(false);
+    let pinned = is_pinned(state, point);
     let label = if pinned { "unpin a point" } else { "pin a point" };
     state.edit(Edit::new(label, vec![Change::Pin(point..point + 1, !pinned)]));
 }
