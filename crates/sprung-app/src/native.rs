@@ -10,7 +10,7 @@ use sprung_driver::{Driver, Handle, Source};
 
 use crate::app::App;
 use crate::files::Origin;
-use crate::settings::Settings;
+use crate::settings::{Settings, ZOOM};
 
 /// What the system knows the window by: for its settings, its icon and its taskbar.
 const APP_ID: &str = "sprung";
@@ -23,9 +23,6 @@ const SIZE: [f32; 2] = [1280.0, 820.0];
 
 /// The least it can be made, points.
 const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
-
-/// Zooms that may be stored: egui's own keys go a little further than our settings.
-const ZOOM_KEPT: std::ops::RangeInclusive<f32> = 0.2..=5.0;
 
 /// What the window begins with.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +76,7 @@ fn fresh_context() -> Option<egui::Context> {
 fn zooms_are_sane(text: &str) -> bool {
     text.split("zoom_factor:").skip(1).all(|rest| {
         let end = rest.find([',', ')']).unwrap_or(rest.len());
-        rest[..end].trim().parse::<f32>().is_ok_and(|zoom| ZOOM_KEPT.contains(&zoom))
+        rest[..end].trim().parse::<f32>().is_ok_and(|zoom| ZOOM.contains(&zoom))
     })
 }
 

@@ -1,5 +1,7 @@
 //! What is kept from one start to the next. Settings that cannot be read are as if there were none.
 
+use std::ops::RangeInclusive;
+
 use eframe::Storage;
 use serde::{Deserialize, Serialize};
 use sprung_render::appearance::{Appearance, Theme};
@@ -11,8 +13,8 @@ use crate::state::{AppState, Shown};
 /// The name they are kept under.
 const KEY: &str = "settings";
 
-/// How much larger everything may be made.
-pub(crate) const ZOOM: std::ops::RangeInclusive<f32> = 0.5..=4.0;
+/// How much larger everything may be made: as far as egui's own keys go.
+pub(crate) const ZOOM: RangeInclusive<f32> = 0.2..=5.0;
 
 /// The settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,7 +65,8 @@ impl Settings {
             full_scale: within(self.full_scale, 1e-9, 1e12, usual.full_scale),
             velocity_arrows: within(self.velocity_arrows, 0.0, 1e9, usual.velocity_arrows),
             force_arrows: within(self.force_arrows, 0.0, 1e9, usual.force_arrows),
-            zoom: within(self.zoom, *ZOOM.start(), *ZOOM.end(), usual.zoom),
+            // Nobody has made it what no key makes it.
+            zoom: if ZOOM.contains(&self.zoom) { self.zoom } else { usual.zoom },
             ..self
         }
     }

@@ -317,24 +317,26 @@ pub fn notes(
     let size = vec2(width, galley.size().y + links + 12.0);
     let rect = Rect::from_min_size(bottom - vec2(0.5 * width, size.y), size);
     // In a view that low the scene is worth more than the note.
-    if rect.min.y < view.min.y + 0.5 * FREE_ABOVE {
+    if rect.min.y < view.center().y {
         return;
     }
     let place = at(ui, rect, Align2::CENTER_TOP, |ui| {
         let shown = plate(ui).show(ui, |ui| {
-            ui.set_max_width(width - 16.0);
-            ui.add(egui::Label::new(galley).selectable(false));
-            if sunk.is_none() {
-                return;
-            }
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 16.0;
-                if ui.link("How it works").clicked() && !state.shown.explain {
-                    state.act(Action::Explain);
+            ui.vertical(|ui| {
+                ui.set_max_width(width - 16.0);
+                ui.add(egui::Label::new(galley).selectable(false));
+                if sunk.is_none() {
+                    return;
                 }
-                if ui.link("Understood").on_hover_text("Puts this note away").clicked() {
-                    notes.plane_read = Some(serial);
-                }
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 16.0;
+                    if ui.link("How it works").clicked() && !state.shown.explain {
+                        state.act(Action::Explain);
+                    }
+                    if ui.link("Understood").on_hover_text("Puts this note away").clicked() {
+                        notes.plane_read = Some(serial);
+                    }
+                });
             });
         });
         shown.response.rect
