@@ -7,7 +7,7 @@ use sprung::{BlowUp, Cause, Params, significant};
 use sprung_driver::{Command, Fix, Trouble};
 
 use super::error::capital;
-use super::{beside, primary};
+use super::{Part, beside, primary};
 use crate::icon::{self, IconButton};
 use crate::state::{AppState, Pick};
 use crate::theme::Meaning;
@@ -60,7 +60,10 @@ impl BlowUpCard {
     pub fn show(&mut self, context: &Context, state: &mut AppState, blow_up: &BlowUp, scene: Rect) {
         let colour = Meaning::Bad.colour(&context.global_style().visuals);
         let title = RichText::new("It blew up").color(colour);
-        let closed = beside(context, "blow-up", title, scene, |ui| {
+        let closed = beside(context, "blow-up", title, scene, |ui, part| {
+            if part == Part::Foot {
+                return self.ways_on(ui, state);
+            }
             ui.label(what(blow_up));
             ui.weak(format!(
                 "You see the last good state, of t = {} s (step {}).",
@@ -73,8 +76,6 @@ impl BlowUpCard {
             ui.label(why(blow_up));
             heading(ui, "What mends it");
             self.fixes(ui, state);
-            ui.add_space(6.0);
-            self.ways_on(ui, state);
         });
         self.had_focus = context.memory(|memory| memory.focused().is_some());
         if closed {

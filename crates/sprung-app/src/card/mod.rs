@@ -120,8 +120,25 @@ fn modal(context: &Context, id: &str, title: &str, width: f32, add: impl FnOnce(
     response.inner || response.should_close()
 }
 
-/// A card beside what is seen, which stays bright and can be turned; gives whether Esc or its cross was pressed.
-fn beside(context: &Context, id: &str, title: RichText, scene: Rect, add: impl FnOnce(&mut Ui)) -> bool {
+/// A part of a card beside the scene.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Body,
+    Foot,
+}
+
+/// Height of a foot with a row of buttons, which may take two lines in a narrow card, points.
+const FOOT: f32 = 64.0;
+
+/// A card beside what is seen, which stays bright and can be turned; gives whether Esc or its cross was pressed. What is
+/// too long for the window scrolls, but not its foot, where the buttons are.
+fn beside(
+    context: &Context,
+    id: &str,
+    title: RichText,
+    scene: Rect,
+    mut add: impl FnMut(&mut Ui, Part),
+) -> bool {
     let width = 400.0_f32.min(scene.width() - 24.0).max(240.0);
     let corner = scene.right_top() + vec2(-12.0, 12.0);
     let area =
@@ -139,7 +156,10 @@ fn beside(context: &Context, id: &str, title: RichText, scene: Rect, add: impl F
                                 .inner
                         })
                         .inner;
-                    ScrollArea::vertical().show(ui, add);
+                    let room = (ui.available_height() - FOOT).max(60.0);
+                    ScrollArea::vertical().max_height(room).show(ui, |ui| add(ui, Part::Body));
+                    ui.add_space(6.0);
+                    add(ui, Part::Foot);
                     closed
                 })
                 .inner
