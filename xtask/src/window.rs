@@ -27,11 +27,12 @@ impl Display {
     /// Starts one on a free number.
     pub fn start() -> Outcome<Self> {
         let screen = format!("{}x{}x24", SCREEN.0, SCREEN.1);
-        let mut server = program("Xvfb", &["-displayfd", "1", "-screen", "0", &screen, "-nolisten", "tcp"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .map_err(|error| format!("Xvfb cannot be started: {error}"))?;
+        let mut server =
+            program("Xvfb", &["-displayfd", "1", "-screen", "0", &screen, "-nolisten", "tcp", "-noreset"])
+                .stdout(Stdio::piped())
+                .stderr(Stdio::null())
+                .spawn()
+                .map_err(|error| format!("Xvfb cannot be started: {error}"))?;
         let stdout = server.stdout.take().ok_or("Xvfb has no output")?;
         let mut number = String::new();
         BufReader::new(stdout)
@@ -50,6 +51,9 @@ impl Drop for Display {
 
 /// Somewhere in the middle of the scene of a window of the usual size, pixels.
 const MIDDLE: (i32, i32) = (800, 400);
+
+/// Beside the buttons of the bar.
+const ASIDE: (i32, i32) = (1240, 15);
 
 /// The program with its window.
 pub struct Window<'a> {
@@ -91,6 +95,8 @@ impl<'a> Window<'a> {
             window.id = ids.lines().next().unwrap_or_default().to_owned();
             sleep(Duration::from_millis(100));
         }
+        // There is no window manager that would give it the keyboard.
+        quiet(&mut window.xdotool(&["windowfocus", "--sync", &window.id]))?;
         Ok(window)
     }
 
@@ -129,9 +135,9 @@ impl<'a> Window<'a> {
     }
 
     /// Opens a file by its path, through the card.
-    pub fn open_file(&self, path: &Path) -> Outcome {
+    pub fn open_file(&mut self, path: &Path) -> Outcome {
         self.key("ctrl+o")?;
-        sleep(Duration::from_secs(1));
+        self.wait_for_title("card: Open a scene")?;
         self.text(&path.display().to_string())?;
         self.key("Return")
     }
@@ -141,9 +147,12 @@ impl<'a> Window<'a> {
         MIDDLE
     }
 
-    /// Its picture once nothing moves any more.
+    /// Its picture once nothing moves any more, with the cursor where it points at nothing.
     pub fn steady(&mut self, name: &str) -> Outcome<Vec<u8>> {
         let begun = Instant::now();
+        let [x, y] = [ASIDE.0, ASIDE.1].map(|place| place.to_string());
+        quiet(&mut self.xdotool(&["mousemove", "--window", &self.id, &x, &y]))?;
+        sleep(Duration::from_millis(500));
         let mut before = self.picture(name)?;
         loop {
             sleep(Duration::from_millis(1500));

@@ -104,11 +104,10 @@ fn opens_files(display: &Display, sprung: &Path, folder: &Path) -> Outcome {
     let mut window = Window::open(display, sprung, &["view", "chain"], folder)?;
     window.wait_for_title("chain – sprung")?;
     window.open_file(&folder.join("broken.toml"))?;
-    sleep(Duration::from_secs(2));
+    window.wait_for_title("card: That did not work")?;
     window.picture("bad-file")?;
-    window.wait_for_title("chain")?;
     window.key("Escape")?;
-    window.key("Escape")?;
+    window.wait_for_title("chain – sprung")?;
     window.open_file(&folder.join("stone.toml"))?;
     window.wait_for_title("stone")?;
     for (width, height) in [(800, 600), (520, 400), (1300, 860)] {
