@@ -11,8 +11,10 @@ use super::canvas::Canvas;
 use crate::media::{self, FilmClock, PictureSize, SaveRequest};
 use crate::state::AppState;
 
-/// How long a film may be written before the window is drawn again.
-const PIECE: Duration = Duration::from_millis(12);
+/// How long a film may be written before the window is drawn again, s.
+const PIECE: f64 = 0.012;
+/// The same where drawing takes long: about as long as that, but the window must still answer.
+const LONGEST_PIECE: f64 = 0.25;
 /// The largest side of a picture, pixels.
 const LARGEST: u32 = 8192;
 
@@ -121,6 +123,8 @@ impl Saver {
 
     /// Takes the pictures that are due, or writes for some milliseconds; true if it wants to go on soon.
     pub fn go_on(&mut self, canvas: &mut Canvas, state: &mut AppState, marks: &Marks, real: f64) -> bool {
+        // Half of the time between two pictures of the window, which writing is part of: as long as drawing takes.
+        let piece = (0.5 * (real - self.real)).clamp(PIECE, LONGEST_PIECE);
         self.real = real;
         match std::mem::take(&mut self.film) {
             Film::None => return false,
@@ -146,7 +150,7 @@ impl Saver {
                 }
                 media::Film::None | media::Film::Unwanted => state.say("The film was not kept"),
             },
-            Film::Writing(writing) => match write(writing) {
+            Film::Writing(writing) => match write(writing, Duration::from_secs_f64(piece)) {
                 Ok(Progressed::Going(writing)) => self.film = Film::Writing(writing),
                 Ok(Progressed::Done(_)) => state.say("The film is saved"),
                 Err(error) => state.refuse(error),
@@ -207,11 +211,11 @@ fn take(
     (0..missing).try_for_each(|_| recording.push(&image))
 }
 
-fn write(mut writing: Box<Writing>) -> Result<Progressed> {
+fn write(mut writing: Box<Writing>, piece: Duration) -> Result<Progressed> {
     let begin = Instant::now();
     loop {
         match writing.go_on()? {
-            Progressed::Going(further) if begin.elapsed() < PIECE => writing = further,
+            Progressed::Going(further) if begin.elapsed() < piece => writing = further,
             other => return Ok(other),
         }
     }
