@@ -2,7 +2,7 @@
 //!
 //! Positions go up once a frame; what can be computed from them (lengths of springs and their colours, normals, coils)
 //! is computed in shaders. WebGL2 has neither storage buffers nor compute shaders, so all long lists are
-//! [tables](table): textures that vertex shaders read. Blending between two steps is the one thing done for each point
+//! tables: textures that vertex shaders read. Blending between two steps is the one thing done for each point
 //! on the processor: positions are copied for the upload anyway, and the card then reads one table instead of two.
 //!
 //! A picture is made in three passes: what the key light sees (the shadow map), the scene itself in linear light with
