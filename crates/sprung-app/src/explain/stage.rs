@@ -19,7 +19,7 @@ pub struct StageInfo {
     pub stage: Stage,
     /// A few words.
     pub name: &'static str,
-    /// Its formula, in the markup of [`formula`](super::formula).
+    /// Its formula, in the markup of the formulas (`x_i`, `k_{s}`).
     pub formula: &'static str,
     /// What happens, in a sentence.
     pub meaning: &'static str,
