@@ -30,6 +30,7 @@ pub fn show(context: &Context) -> bool {
     modal(context, "help card", TITLE, 860.0, |ui| {
         let half = ACTIONS.len().div_ceil(2);
         if ui.available_width() > 700.0 {
+            ui.spacing_mut().item_spacing.x = 24.0;
             ui.columns(2, |columns| {
                 keys(&mut columns[0], &ACTIONS[..half]);
                 keys(&mut columns[1], &ACTIONS[half..]);
@@ -52,7 +53,7 @@ pub fn show(context: &Context) -> bool {
 
 fn keys(ui: &mut Ui, actions: &[ActionInfo]) {
     let context = ui.ctx().clone();
-    ui.spacing_mut().item_spacing.y = 4.0;
+    ui.spacing_mut().item_spacing = vec2(8.0, 4.0);
     for info in actions {
         ui.horizontal_top(|ui| {
             let cell = vec2(KEYS_WIDTH, ui.text_style_height(&egui::TextStyle::Body));

@@ -68,11 +68,16 @@ impl Asked {
     }
 }
 
+/// How long a sentence stays once the field was left, s. Then the field shows the value that holds.
+const READING_TIME: f64 = 6.0;
+
 /// What is in the text field while it is edited or refused.
 #[derive(Clone, Debug, Default)]
 struct Typing {
     text: String,
     refused: Option<String>,
+    /// When the field was left with something that was refused, s.
+    left: Option<f64>,
 }
 
 impl Number<'_> {
@@ -185,10 +190,16 @@ impl Number<'_> {
     }
 
     fn field(&self, ui: &mut Ui, id: Id, value: f64, name: Id) -> Option<f64> {
+        let now = ui.input(|input| input.time);
         let kept: Option<Typing> = ui.data(|data| data.get_temp(id));
+        let is_over = |typing: &Typing| typing.left.is_some_and(|left| now - left > READING_TIME);
+        if kept.as_ref().is_some_and(is_over) {
+            ui.data_mut(|data| data.remove_temp::<Typing>(id));
+        }
         let shown = significant(value);
-        let Typing { mut text, refused } =
-            kept.unwrap_or_else(|| Typing { text: shown.clone(), refused: None });
+        let Typing { mut text, refused, .. } = kept
+            .filter(|typing| !is_over(typing))
+            .unwrap_or_else(|| Typing { text: shown.clone(), ..Typing::default() });
         let colour = refused.is_some().then(|| Meaning::Bad.colour(ui.visuals()));
         let output = TextEdit::singleline(&mut text)
             .id(id)
@@ -213,14 +224,22 @@ impl Number<'_> {
             match self.parse(&text) {
                 Ok(value) => return Some(value),
                 Err(sentence) => {
-                    let typing = Typing { text, refused: Some(sentence) };
+                    // After Enter one goes on typing, or presses Esc for the value that holds.
+                    let left = if ui.input(|input| input.key_pressed(Key::Enter)) {
+                        ui.memory_mut(|memory| memory.request_focus(id));
+                        None
+                    } else {
+                        ui.ctx().request_repaint_after_secs(READING_TIME as f32 + 0.1);
+                        Some(now)
+                    };
+                    let typing = Typing { text, refused: Some(sentence), left };
                     ui.data_mut(|data| data.insert_temp(id, typing));
                 }
             }
         } else if response.has_focus() {
             // The sentence stays until something else is typed.
             let refused = refused.filter(|_| !response.changed());
-            ui.data_mut(|data| data.insert_temp(id, Typing { text, refused }));
+            ui.data_mut(|data| data.insert_temp(id, Typing { text, refused, left: None }));
         }
         None
     }

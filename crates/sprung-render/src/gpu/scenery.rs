@@ -113,35 +113,43 @@ impl Scenery {
         if let Some(plan) = plan {
             solid(&mut list, plan, lens, palette);
             grounds(&mut list, lens, palette);
-            self.marks(&mut list, lens, palette);
+            self.marks(&mut list, plan, lens, palette);
             if lens.model.is_some_and(|model| lens.moment.ghost.len() == model.point_count()) {
                 ghost(&mut list, plan, lens, palette);
             }
-            self.alarms(&mut list, lens, palette);
+            self.alarms(&mut list, plan, lens, palette);
         }
         (list.calls, list.styles)
     }
 
     /// What is selected and under the cursor; where it is hidden by other things it shines through them faintly.
-    fn marks<'a>(&'a self, list: &mut Drawings<'a>, lens: &Lens<'_>, palette: &Palette) {
-        let marked = &self.marked;
+    fn marks<'a>(&'a self, list: &mut Drawings<'a>, plan: &Plan, lens: &Lens<'_>, palette: &Palette) {
+        let (marked, thick) = (&self.marked, thickness(plan));
         for (line, ring, opacity) in
             [(Pipe::OverLines, Pipe::OverRings, FAINT), (Pipe::MarkLines, Pipe::MarkRings, 1.0)]
         {
-            list.line(line, &marked.selected_springs, lens, (palette.selected, opacity), 2.0);
-            list.line(line, &marked.hovered_spring, lens, (palette.hovered, opacity), 1.6);
+            list.line(line, &marked.selected_springs, lens, (palette.selected, opacity), (thick, 2.0));
+            list.line(line, &marked.hovered_spring, lens, (palette.hovered, opacity), (thick, 1.6));
             list.ring(ring, &marked.selected_points, lens, (palette.selected, opacity), 2.4);
             list.ring(ring, &marked.hovered_point, lens, (palette.hovered, opacity), 1.8);
         }
     }
 
     /// What must be seen through everything.
-    fn alarms<'a>(&'a self, list: &mut Drawings<'a>, lens: &Lens<'_>, palette: &Palette) {
-        let marked = &self.marked;
-        list.line(Pipe::OverSegments, &marked.pulls, lens, (palette.pull, 1.0), 1.4);
-        list.line(Pipe::OverLines, &marked.alarming_springs, lens, (palette.alarm, 1.0), 2.2);
+    fn alarms<'a>(&'a self, list: &mut Drawings<'a>, plan: &Plan, lens: &Lens<'_>, palette: &Palette) {
+        let (marked, thick) = (&self.marked, thickness(plan));
+        list.line(Pipe::OverSegments, &marked.pulls, lens, (palette.pull, 1.0), (THICK, 1.4));
+        list.line(Pipe::OverLines, &marked.alarming_springs, lens, (palette.alarm, 1.0), (thick, 2.2));
         list.ring(Pipe::OverRings, &marked.alarming_points, lens, (palette.alarm, 1.0), 3.0);
     }
+}
+
+/// How much thicker than a spring's line its mark is.
+const THICK: f32 = 1.6;
+
+/// The same where springs are drawn as coils: a thin line along the axis, which the windings go around.
+fn thickness(plan: &Plan) -> f32 {
+    if plan.coils { 0.0 } else { THICK }
 }
 
 /// A growing list of drawings.
@@ -169,8 +177,15 @@ impl<'a> Drawings<'a> {
     }
 
     /// Adds thick lines of a colour and opacity, at least so many pixels in radius.
-    fn line(&mut self, pipe: Pipe, mesh: &'a List, lens: &Lens<'_>, (hex, opacity): (u32, f32), pixels: f32) {
-        let size = [1.6 * lens.sizes.wire, pixels, 1.0, opacity];
+    fn line(
+        &mut self,
+        pipe: Pipe,
+        mesh: &'a List,
+        lens: &Lens<'_>,
+        (hex, opacity): (u32, f32),
+        (thick, pixels): (f32, f32),
+    ) {
+        let size = [thick * lens.sizes.wire, pixels, 1.0, opacity];
         let style = Style { colour: colour(hex, 1.0), size, back: [1.0, 3.0, 0.0, 0.0], ..Style::default() };
         self.draw(&[pipe], Source::Now, Mesh::Instances(4, mesh), style);
     }
