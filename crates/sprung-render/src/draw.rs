@@ -6,7 +6,9 @@ use sprung::{Model, Params, SurfaceKind};
 use crate::camera::{Camera, Projected};
 use crate::colour::{Colour, diverging, srgb};
 use crate::motion::spring_force;
+use crate::palette::LIGHT;
 use crate::raster::{Capsule, Corner, Sphere, Triangle};
+use crate::surroundings::{openness, spacing};
 
 /// Up to this many springs are drawn as coils.
 const COILS: usize = 40;
@@ -18,16 +20,6 @@ const CLOSEST_PIXELS: f32 = 6.0;
 const MOST_MARKS: usize = 200;
 /// Springs that are drawn at all.
 const MOST_WIRES: usize = 400_000;
-
-/// Balls of the bodies, in turn.
-const BALLS: [u32; 6] = [0x12_7a_8a, 0x76_4d_a6, 0x4c_8a_26, 0xb8_55_7c, 0x8c_6c_2c, 0x34_63_ae];
-/// Balls of fixed points.
-pub const FIXED: u32 = 0x1f_24_2b;
-/// Front and back of cloth, with wires on it and without.
-const CLOTH_PALE: [u32; 2] = [0xf6_ee_e0, 0xb9_d4_de];
-const CLOTH_RICH: [u32; 2] = [0x1f_8f_94, 0xec_9a_50];
-/// Skin of solids that are too fine for balls and wires.
-const SKIN: [u32; 2] = [0x2a_a3_90, 0x18_58_4e];
 
 /// What is drawn of a model, and how large: chosen once for a motion.
 #[derive(Clone, Debug)]
@@ -61,8 +53,7 @@ impl Look {
     /// Chooses for a model; `extent` (m) is the size of the motion, for models without springs.
     pub fn new(model: &Model, extent: f32, full_force: f32) -> Self {
         let points = model.point_count();
-        let spacing = median(model.spring_rest_length())
-            .unwrap_or_else(|| extent / libm::cbrtf(points as f32).max(4.0));
+        let spacing = spacing(model).unwrap_or_else(|| extent / libm::cbrtf(points as f32).max(4.0));
         let few = points <= 40;
         Self {
             ball: if points <= 4 { 0.09 } else { 0.16 } * spacing,
@@ -117,7 +108,7 @@ impl Look {
     ) {
         for (index, body) in model.bodies().iter().enumerate() {
             let detail = self.body_in_detail[index];
-            let colour = srgb(BALLS[index % BALLS.len()]);
+            let colour = srgb(LIGHT.balls[index % LIGHT.balls.len()]);
             let mut marks_left = MOST_MARKS;
             for point in body.points.clone() {
                 let fixed = params.is_fixed(point);
@@ -138,7 +129,7 @@ impl Look {
                     depth,
                     radius,
                     pixel_radius: radius * camera.focal / depth,
-                    colour: if fixed { srgb(FIXED) } else { colour },
+                    colour: if fixed { srgb(LIGHT.fixed) } else { colour },
                     open: open[point],
                 });
             }
@@ -189,9 +180,9 @@ impl Look {
             let tints = match (surface.kind, detail) {
                 // Inside a skin of a solid shown in detail nothing could be seen.
                 (SurfaceKind::Skin, true) => continue,
-                (SurfaceKind::Skin, false) => SKIN,
-                (SurfaceKind::Cloth, true) => CLOTH_PALE,
-                (SurfaceKind::Cloth, false) => CLOTH_RICH,
+                (SurfaceKind::Skin, false) => LIGHT.skin,
+                (SurfaceKind::Cloth, true) => LIGHT.cloth_pale,
+                (SurfaceKind::Cloth, false) => LIGHT.cloth_rich,
             };
             // Normals of the corners: the sum over their triangles, weighted by area as cross products are.
             normals.clear();
@@ -273,30 +264,6 @@ fn coil(a: Vec3, b: Vec3, rest: f32, ball: f32) -> Vec<Vec3> {
     path
 }
 
-/// How much of the sky each point sees: less, the more evenly its springs surround it. Sheets and chains see all of it.
-fn openness(model: &Model, positions: &[Vec3]) -> Vec<f32> {
-    let mut around = vec![(Vec3::ZERO, 0.0f32); positions.len()];
-    for &[i, j] in model.springs() {
-        let (i, j) = (i as usize, j as usize);
-        let direction = (positions[j] - positions[i]).normalize_or_zero();
-        around[i].0 += direction;
-        around[j].0 -= direction;
-        around[i].1 += 1.0;
-        around[j].1 += 1.0;
-    }
-    let open = |(sum, count): (Vec3, f32)| {
-        if count <= 8.0 { 1.0 } else { (0.42 + 1.5 * sum.length() / count).min(1.0) }
-    };
-    around.into_iter().map(open).collect()
-}
-
-/// The middle value of those above zero.
-fn median(values: &[f32]) -> Option<f32> {
-    let mut values: Vec<f32> = values.iter().copied().filter(|&value| value > 0.0).collect();
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,11 +275,5 @@ mod tests {
         assert_eq!((path.first(), path.last()), (Some(&a), Some(&b)));
         assert!(path.iter().all(|place| (place.x - 1.0).hypot(place.z - 3.0) < 0.6));
         assert!(coil(a, a, 5.0, 0.5).iter().all(|place| place.is_finite()));
-    }
-
-    #[test]
-    fn the_median_leaves_zeros_out() {
-        assert_eq!(median(&[0.0, 3.0, 1.0, 2.0, 0.0]), Some(2.0));
-        assert_eq!(median(&[0.0]), None);
     }
 }

@@ -5,8 +5,8 @@ use sprung::Params;
 use sprung_io::RunInfo;
 
 use crate::colour::{INK, INK_SOFT, diverging, srgb};
-use crate::draw::FIXED;
 use crate::image::Image;
+use crate::palette::LIGHT;
 use crate::text::{self, Anchor, Style, number};
 
 /// Pictures lower than this carry no text, pixels.
@@ -115,7 +115,7 @@ impl Overlay {
         if self.any_fixed {
             text::draw(image, "fixed point", Vec2::new(right, below), Anchor::End, style);
             let left = right - text::width("fixed point", unit) - 0.8 * unit;
-            image.disc(Vec2::new(left, below - 0.3 * unit), 0.32 * unit, srgb(FIXED));
+            image.disc(Vec2::new(left, below - 0.3 * unit), 0.32 * unit, srgb(LIGHT.fixed));
         }
     }
 

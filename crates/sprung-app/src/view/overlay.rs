@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, RichText, Stroke, Ui, UiBuilder, Vec2, pos2, vec2};
 use sprung::Vec3;
 use sprung_driver::{Report, Trouble};
+use sprung_render::palette::{DARK, LIGHT, Palette};
 use sprung_render::turntable::Turntable;
 
 use super::drawn::Drawn;
@@ -197,20 +198,20 @@ fn length_text(length: f32) -> String {
     format!("{} {unit}", sprung::significant(f64::from(format!("{value:.1e}").parse().unwrap_or(value))))
 }
 
-/// A colour, 0xRRGGBB, for each theme.
-fn ink(ui: &Ui, light: u32, dark: u32) -> Color32 {
-    let hex = if ui.visuals().dark_mode { dark } else { light };
+/// A colour of the renderer's palette, in the theme of the window.
+fn ink(ui: &Ui, colour: impl Fn(&Palette) -> u32) -> Color32 {
+    let hex = colour(if ui.visuals().dark_mode { &DARK } else { &LIGHT });
     Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
 }
 
-/// The colour of forces, as the renderer's arrows have it.
+/// The colour of forces: that of their arrows.
 pub fn force_ink(ui: &Ui) -> Color32 {
-    ink(ui, 0xa0_1f_6e, 0xf0_86_c4)
+    ink(ui, |palette| palette.force)
 }
 
 /// The colour of velocities.
 pub fn velocity_ink(ui: &Ui) -> Color32 {
-    ink(ui, 0x1b_7f_3b, 0x5f_d9_84)
+    ink(ui, |palette| palette.velocity)
 }
 
 /// What the arrows and the ghost are, above the colour legend at the bottom left.
@@ -229,7 +230,7 @@ pub fn keys(ui: &Ui, view: Rect, below: f32, state: &AppState) -> f32 {
     }
     if let Some(ghost) = &state.report.comparison {
         let text = format!("the earlier run: at most {} m apart", steady(ghost.apart));
-        lines.push((ink(ui, 0x6d_7f_99, 0xa9_bb_d2), text));
+        lines.push((ink(ui, |palette| palette.ghost.0), text));
     }
     let top =
         below - 21.0 * f32::from(u8::from(!lines.is_empty())) - 18.0 * lines.len().saturating_sub(1) as f32;

@@ -3,10 +3,10 @@
 use glam::{Vec2, Vec3};
 use sprung::{Params, Plane};
 
-use super::palette::{Palette, palette};
 use crate::appearance::Appearance;
 use crate::camera::{Bounds, Camera};
 use crate::colour::srgb;
+use crate::palette::{Palette, palette};
 
 /// Planes that are drawn; common.wgsl knows it too.
 pub const MOST_PLANES: usize = 8;

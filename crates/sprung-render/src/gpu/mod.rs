@@ -17,7 +17,6 @@ mod coarse;
 mod data;
 mod device;
 mod frame;
-mod palette;
 mod passes;
 mod pipelines;
 mod plan;

@@ -6,13 +6,13 @@ use wgpu::Device;
 
 use super::data::{List, MOST_STYLES, Source, Style};
 use super::frame::{MOST_PLANES, colour, row};
-use super::palette::{Palette, palette};
 use super::passes::{Call, Lens, Mesh};
 use super::pipelines::Pipe;
 use super::plan::Plan;
 use super::{Marks, stage};
 use crate::appearance::ColourBy;
 use crate::camera::Bounds;
+use crate::palette::{Palette, palette};
 
 /// More springs than this cast no shadow of their own: there is a surface or a crowd of points that does.
 const MOST_SHADOWS: u32 = 100_000;

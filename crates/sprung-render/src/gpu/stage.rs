@@ -15,12 +15,12 @@ use super::plan::{Basis, Plan};
 use super::quality::Quality;
 use super::scenery::{Scenery, Sizes};
 use super::target::{self, Target};
-use super::topology;
 use super::{Marks, Moment, read};
 use crate::appearance::Appearance;
 use crate::camera::{Bounds, Camera};
 use crate::ground::nice_step;
 use crate::image::Image;
+use crate::surroundings;
 
 /// How long the last drawing took on this side of the card, s. What the card does comes after.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -105,7 +105,7 @@ impl Stage {
         self.plan = None;
         self.openness = None;
         self.coarse.clear();
-        self.spacing = topology::spacing(model);
+        self.spacing = surroundings::spacing(model).unwrap_or(0.0);
         self.first = Bounds::default();
     }
 
@@ -231,7 +231,7 @@ impl Stage {
             let surfaces = model.surfaces().iter();
             self.coarse = surfaces.map(|surface| coarser(&surface.triangles, moment.now)).collect();
         }
-        let openness = self.openness.get_or_insert_with(|| topology::openness(model, moment.now));
+        let openness = self.openness.get_or_insert_with(|| surroundings::openness(model, moment.now));
         let mut bounds = self.data.set_positions(&self.queue, moment, openness);
         if self.first == Bounds::default() {
             self.first = bounds;

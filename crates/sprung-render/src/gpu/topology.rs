@@ -1,6 +1,6 @@
 //! What lies around each point: its triangles, its springs, and the edges of surfaces. Worked out once for a model.
 
-use sprung::{Model, Vec3};
+use sprung::Model;
 
 /// For each point its triangles and springs, in lists one after the other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -70,36 +70,10 @@ pub fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     edges
 }
 
-/// How much of the sky each point sees: less, the more evenly its springs surround it. Sheets and chains see all of it.
-pub fn openness(model: &Model, positions: &[Vec3]) -> Vec<f32> {
-    let mut around = vec![(Vec3::ZERO, 0.0f32); model.point_count()];
-    for &[i, j] in model.springs() {
-        let (i, j) = (i as usize, j as usize);
-        let (Some(a), Some(b)) = (positions.get(i), positions.get(j)) else { continue };
-        let direction = (*b - *a).normalize_or_zero();
-        around[i].0 += direction;
-        around[j].0 -= direction;
-        around[i].1 += 1.0;
-        around[j].1 += 1.0;
-    }
-    let open = |(sum, count): (Vec3, f32)| {
-        if count <= 8.0 { 1.0 } else { (0.42 + 1.5 * sum.length() / count).min(1.0) }
-    };
-    around.into_iter().map(open).collect()
-}
-
-/// The median rest length, m: the distance between neighbours; 0 where there is no spring.
-pub fn spacing(model: &Model) -> f32 {
-    let mut lengths: Vec<f32> =
-        model.spring_rest_length().iter().copied().filter(|&length| length > 0.0).collect();
-    let middle = lengths.len() / 2;
-    if lengths.is_empty() { 0.0 } else { *lengths.select_nth_unstable_by(middle, f32::total_cmp).1 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::{Material, ModelBuilder, SurfaceKind};
+    use sprung::{Material, ModelBuilder, SurfaceKind, Vec3};
 
     /// A square of two triangles, with a spring along each edge and one to a point aside.
     fn model() -> Model {
@@ -133,10 +107,5 @@ mod tests {
     #[test]
     fn edges_are_found_once() {
         assert_eq!(edges(&[[0, 1, 2], [0, 2, 3]]), [[0, 1], [0, 2], [0, 3], [1, 2], [2, 3]]);
-    }
-
-    #[test]
-    fn the_median_leaves_out_springs_of_no_length() {
-        assert_eq!(spacing(&model()), 1.0);
     }
 }

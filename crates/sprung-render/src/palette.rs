@@ -1,4 +1,5 @@
-//! The studio's colours and lights, in the light and in the dark.
+//! The studio's colours and lights, in the light and in the dark: of the graphics card's pictures, of the software ones (the
+//! light studio's colours) and of what the window writes over its scene.
 
 use crate::appearance::Theme;
 
@@ -52,8 +53,8 @@ pub struct Palette {
     pub force: u32,
 }
 
-/// A bright studio, that of the software renderer.
-static LIGHT: Palette = Palette {
+/// A bright studio. The software renderer takes its colours; lights of its own, as it has no ambient shadow.
+pub static LIGHT: Palette = Palette {
     sky: [0.68, 0.69, 0.70],
     floor: [0.42, 0.41, 0.41],
     sun: [0.66, 0.63, 0.58],
@@ -80,7 +81,7 @@ static LIGHT: Palette = Palette {
 };
 
 /// The same studio with the lights on the things alone.
-static DARK: Palette = Palette {
+pub static DARK: Palette = Palette {
     sky: [0.50, 0.53, 0.58],
     floor: [0.20, 0.21, 0.23],
     sun: [0.74, 0.72, 0.68],
