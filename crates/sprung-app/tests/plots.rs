@@ -186,6 +186,45 @@ fn a_chain_at_rest_is_stretched_as_its_formula_says() {
     assert!(window.query_by_label_contains("At rest: the largest difference is").is_some());
 }
 
+/// A larger scene gives way to a smaller one in the very frame in which its plot is saved.
+#[test]
+fn what_is_saved_right_after_a_change_of_scene_is_that_of_the_new_one() {
+    for (first, then) in [("chain", "dust"), ("spring", "chain"), ("chain", "spring")] {
+        let mut window = window(builtin(first), SIZE);
+        state(&mut window).shown.plots = true;
+        click(&mut window, "Formula");
+        click(&mut window, "Save plot…");
+        let next = if then == "dust" { scene("dust", DUST) } else { builtin(then) };
+        state(&mut window).send(Command::Open(Box::new(next)));
+        window.get_by_label("Numbers (.csv)").click_accesskit();
+        window.run_steps(3);
+        let requests: Vec<_> =
+            state(&mut window).save_requests.drain(..).map(|request| request.name).collect();
+        let expected = match then {
+            "chain" => vec!["chain-stretch.csv"],
+            "spring" => vec!["spring-oscillation.csv"],
+            _ => Vec::new(),
+        };
+        assert_eq!(requests, expected, "{first}, then {then}");
+    }
+}
+
+#[test]
+fn what_is_recorded_for_a_formula_is_that_of_the_scene_on_every_tab() {
+    let mut window = window(builtin("spring"), SIZE);
+    state(&mut window).shown.plots = true;
+    click(&mut window, "Formula");
+    assert_eq!(state(&mut window).report.watched.len(), 6, "place and velocity of the mass");
+    click(&mut window, "Energy");
+    assert_eq!(state(&mut window).report.watched.len(), 6);
+    state(&mut window).send(Command::Open(Box::new(builtin("cloth"))));
+    window.run_steps(4);
+    assert!(state(&mut window).report.watched.is_empty(), "{:?}", state(&mut window).report.watched);
+    state(&mut window).send(Command::Open(Box::new(builtin("spring"))));
+    window.run_steps(4);
+    assert_eq!(state(&mut window).report.watched.len(), 6);
+}
+
 #[test]
 fn a_run_that_explodes_is_plotted_too() {
     let mut window = window(builtin("jelly"), [800.0, 600.0]);

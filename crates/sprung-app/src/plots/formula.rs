@@ -18,13 +18,24 @@ pub struct Formula {
     oscillation: Oscillation,
     stretch: Stretch,
     shape: Option<Shape>,
+    /// Somebody has looked at it: from then on what it needs is recorded.
+    is_wanted: bool,
 }
 
 impl Formula {
+    /// Finds out which formula fits, and since when. This comes before all else in each frame, whatever tab is shown: the
+    /// scene may be another one, or its spring may have been cut.
+    pub fn follow(&mut self, report: &Report) {
+        self.shape = shape::recognise(&report.opened.model, &report.params);
+        if let Some(Shape::Oscillator(_)) = &self.shape {
+            self.oscillation.notice_disturbance(report);
+        }
+    }
+
     /// What must be recorded for it.
     pub fn probes(&self) -> Vec<Probe> {
         match &self.shape {
-            Some(Shape::Oscillator(oscillator)) => Oscillation::probes(oscillator),
+            Some(Shape::Oscillator(oscillator)) if self.is_wanted => Oscillation::probes(oscillator),
             _ => Vec::new(),
         }
     }
@@ -38,7 +49,7 @@ impl Formula {
         samples: &[&Sample],
         canvas: &mut Canvas,
     ) {
-        self.shape = shape::recognise(&report.opened.model, &report.params);
+        self.is_wanted = true;
         match &self.shape {
             Some(Shape::Oscillator(oscillator)) => {
                 self.oscillation.show(ui, state, report, samples, oscillator, canvas);

@@ -77,6 +77,7 @@ impl Plots {
         self.held = self.held.take().filter(|held| held.opened.serial == serial);
         let report = self.held.clone().unwrap_or_else(|| state.report.clone());
         let samples = self.visible(&report);
+        self.formula.follow(&report);
         ui.add_space(4.0);
         ui.horizontal_wrapped(|ui| self.bar(ui, state, &report, &samples));
         match state.plot {

@@ -82,7 +82,6 @@ impl Oscillation {
         oscillator: &Oscillator,
         canvas: &mut Canvas,
     ) {
-        self.notice_disturbance(report);
         let Some(down) = oscillator.down() else {
             ui.label("Without gravity there is no place to hang at. Switch gravity on to compare with the formula.");
             return;
@@ -163,7 +162,7 @@ impl Oscillation {
     }
 
     /// Whatever changes parameters or places starts the comparison anew.
-    fn notice_disturbance(&mut self, report: &Report) {
+    pub fn notice_disturbance(&mut self, report: &Report) {
         let newest_mark = report.timeline.marks.last().map_or(0, |(step, _)| *step);
         let changed = self.seen.as_ref().is_none_or(|(params, mark)| {
             *mark != newest_mark
