@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use sprung::Vec3;
 use sprung::scene::{BUILTIN, Kind, Scene};
-use sprung_app::{ACTIONS, Action, App, AppState, FilmClock, PLANETS, Pick, PictureSize, Tool};
+use sprung_app::{ACTIONS, Action, App, AppState, FilmClock, PLANETS, Pick, PictureSize, SaveRequest, Tool};
 use sprung_driver::{Command, Driver, Handle, Report, Source, Trouble};
 
 type Window = Harness<'static, App>;
@@ -563,6 +563,46 @@ fn what_is_saved_opens_with_the_same_parameters() {
     open_path(&mut window, &path.display().to_string());
     assert_eq!(report(&window).opened.name, "mine");
     assert_eq!(report(&window).params.gravity.y, -3.7);
+}
+
+/// A path that cannot be written costs nothing: neither what was to be saved nor the card.
+#[test]
+fn what_cannot_be_saved_there_can_be_saved_elsewhere() {
+    let folder = tempfile::tempdir().expect("there is a disk");
+    let enter = |window: &mut Window, path: &std::path::Path| {
+        window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        window.event(egui::Event::Text(path.display().to_string()));
+        window.run_steps(1);
+        window.key_press(Key::Enter);
+        window.run_steps(3);
+    };
+    let mut window = window("chain");
+    let (nowhere, here) = (folder.path().join("none/a.csv"), folder.path().join("a.csv"));
+    let request = SaveRequest { name: "a.csv".to_owned(), bytes: b"1,2\n".to_vec() };
+    window.state_mut().state_mut().save_requests.push(request);
+    window.run_steps(3);
+    enter(&mut window, &nowhere);
+    assert_eq!(state(&window).refused.len(), 1, "it is said why");
+    window.key_press(Key::Escape);
+    window.run_steps(3);
+    assert_eq!(state(&window).save_requests.len(), 1);
+    window.get_by_label("Save the numbers");
+    enter(&mut window, &here);
+    assert_eq!(std::fs::read(&here).expect("it was written"), b"1,2\n");
+    assert!(state(&window).save_requests.is_empty() && window.query_by_label("Save the numbers").is_none());
+    // The same with a file that may be replaced, but cannot be: a folder is in its place.
+    press(&mut window, Action::Save);
+    let in_the_way = folder.path().join("scene.toml");
+    std::fs::create_dir(&in_the_way).expect("it is ours");
+    enter(&mut window, &in_the_way);
+    button(&mut window, "Replace it");
+    assert_eq!(state(&window).refused.len(), 1);
+    window.key_press(Key::Escape);
+    window.run_steps(3);
+    window.get_by_label("Save the scene");
+    enter(&mut window, &folder.path().join("other.toml"));
+    assert!(window.query_by_label("Save the scene").is_none());
+    assert!(folder.path().join("other.toml").is_file());
 }
 
 #[derive(Debug)]

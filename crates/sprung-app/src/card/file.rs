@@ -226,8 +226,7 @@ impl FileCard {
                     self.asks_to_replace = Some(path);
                     return false;
                 }
-                self.save_to(state, &path);
-                true
+                self.save_to(state, &path)
             }
         }
     }
@@ -236,15 +235,16 @@ impl FileCard {
     fn ask_to_replace(&mut self, context: &Context, state: &mut AppState, path: &Path) -> bool {
         let text = format!("{} is there already. What it holds now would be lost.", path.display());
         match question(context, "Replace the file?", &text, ["Replace it", "Keep it"]) {
-            Some(true) => {
-                self.save_to(state, path);
-                return true;
-            }
-            // Back to the card, to choose another name.
-            Some(false) => (self.asks_to_replace, self.is_new) = (None, true),
+            Some(true) => return self.save_to(state, path),
+            Some(false) => self.choose_again(),
             None => {}
         }
         false
+    }
+
+    /// Back to the path, to choose another one.
+    fn choose_again(&mut self) {
+        (self.asks_to_replace, self.is_new) = (None, true);
     }
 
     /// Whether the film may be lost; gives whether the card is done with.
@@ -257,18 +257,18 @@ impl FileCard {
         answer == Some(true)
     }
 
-    /// Writes the file and says so, or says why not.
-    fn save_to(&self, state: &mut AppState, path: &Path) {
+    /// Writes the file and says so, or says why not and keeps all for another path; gives whether the card is done with.
+    fn save_to(&mut self, state: &mut AppState, path: &Path) -> bool {
         let written = match self.purpose {
             Purpose::Film => {
                 // The view writes it, a little in each frame.
                 state.filming.film = Film::To(path.to_owned());
-                return;
+                return true;
             }
-            Purpose::Picture => {
-                let bytes = state.save_requests.first().map_or(&[][..], |request| &request.bytes);
-                files::write(path, bytes)
-            }
+            Purpose::Picture => match state.save_requests.first() {
+                Some(request) => files::write(path, &request.bytes),
+                None => return true,
+            },
             _ => files::scene_text(&state.report).and_then(|text| files::write(path, text.as_bytes())),
         };
         match written {
@@ -277,8 +277,13 @@ impl FileCard {
                     state.files.origin = Origin::File(path.to_owned());
                 }
                 state.say(format!("Saved {} ({bytes} bytes)", path.display()));
+                true
             }
-            Err(error) => state.refuse(error),
+            Err(error) => {
+                state.refuse(error);
+                self.choose_again();
+                false
+            }
         }
     }
 }
