@@ -97,3 +97,23 @@ impl Default for Filming {
         Self { size: PictureSize::default(), rate: 30, clock: FilmClock::default(), film: Film::None }
     }
 }
+
+/// A scene's name as part of a file's: letters, digits, dashes, dots; no folders.
+pub fn file_stem(name: &str) -> String {
+    let keep = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
+    let stem: String = name.chars().take(60).map(keep).collect();
+    if stem.trim_matches(['-', '.']).is_empty() { "scene".to_owned() } else { stem }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_allowed_ones() {
+        assert_eq!(file_stem("a/b\\c: d"), "a-b-c--d");
+        assert_eq!(file_stem("two.words"), "two.words");
+        assert_eq!(file_stem("../"), "scene");
+        assert_eq!(file_stem(""), "scene");
+    }
+}

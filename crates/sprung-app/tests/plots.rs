@@ -143,6 +143,22 @@ fn the_table_that_is_saved_holds_the_samples() {
     }
 }
 
+/// What a scene is called may hold what no file may be called.
+#[test]
+fn files_of_plots_have_names_that_every_system_takes() {
+    for (name, text) in [("spring", "spring"), ("chain", "chain")] {
+        let mut source = builtin(text);
+        source.name = format!("a/b: {name}");
+        let mut window = window(source, SIZE);
+        state(&mut window).shown.plots = true;
+        for tab in ["Energy", "Traces", "Formula"] {
+            click(&mut window, tab);
+            let request = saved(&mut window, "Numbers (.csv)");
+            assert!(request.name.starts_with(&format!("a-b--{name}-")), "{tab}: {}", request.name);
+        }
+    }
+}
+
 /// The overlay of the formula lies on the measured motion, and the period is that of the formula.
 #[test]
 fn pulled_straight_down_the_spring_follows_its_formula() {
@@ -206,6 +222,8 @@ fn what_is_saved_right_after_a_change_of_scene_is_that_of_the_new_one() {
             _ => Vec::new(),
         };
         assert_eq!(requests, expected, "{first}, then {then}");
+        let is_said = window.query_by_label("There is no curve to save").is_some();
+        assert_eq!(is_said, expected.is_empty(), "{first}, then {then}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! The tab that holds the run against a formula, where there is one.
 
 use egui::Ui;
+use sprung::Result;
 use sprung_driver::{Probe, Report, Sample};
 
 use super::canvas::Canvas;
@@ -59,12 +60,15 @@ impl Formula {
         }
     }
 
-    /// The curves as a file.
-    pub fn save(&self, report: &Report, samples: &[&Sample], format: Format) -> Option<SaveRequest> {
+    /// The curves as a file; `None` where there are none.
+    ///
+    /// # Errors
+    /// If the picture cannot be encoded.
+    pub fn save(&self, report: &Report, samples: &[&Sample], format: Format) -> Result<Option<SaveRequest>> {
         match &self.shape {
             Some(Shape::Oscillator(oscillator)) => self.oscillation.save(report, samples, oscillator, format),
-            Some(Shape::Chain(chain)) => Stretch::save(report, chain, format),
-            None => None,
+            Some(Shape::Chain(chain)) => Stretch::save(report, chain, format).map(Some),
+            None => Ok(None),
         }
     }
 }

@@ -140,11 +140,15 @@ impl Plots {
             for format in save::FORMATS {
                 if ui.button(format.name).on_hover_text(format.description).clicked() {
                     let request = match state.plot {
-                        PlotKind::Energy => save::ledger(report, samples, format.format),
-                        PlotKind::Traces => self.traces.save(report, samples, format.format),
+                        PlotKind::Energy => save::ledger(report, samples, format.format).map(Some),
+                        PlotKind::Traces => self.traces.save(report, samples, format.format).map(Some),
                         PlotKind::Formula => self.formula.save(report, samples, format.format),
                     };
-                    state.save_requests.extend(request);
+                    match request {
+                        Ok(Some(request)) => state.save_requests.push(request),
+                        Ok(None) => state.say("There is no curve to save"),
+                        Err(error) => state.refuse(error),
+                    }
                     ui.close();
                 }
             }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
-use sprung::{Change, DVec3};
+use sprung::{Change, DVec3, Result};
 use sprung_driver::{Command, Edit, Probe, Report, Sample};
 
 use super::canvas::{self, Canvas, Sheet, reading, swatch};
@@ -139,15 +139,19 @@ impl Oscillation {
         self.cursor = cursor;
     }
 
-    /// The curves as a file.
+    /// The curves as a file; `None` without gravity, as there is no place to measure from.
+    ///
+    /// # Errors
+    /// If the picture cannot be encoded.
     pub fn save(
         &self,
         report: &Report,
         samples: &[&Sample],
         oscillator: &Oscillator,
         format: Format,
-    ) -> Option<SaveRequest> {
-        let fit = self.fit(report, samples, oscillator, oscillator.down()?);
+    ) -> Result<Option<SaveRequest>> {
+        let Some(down) = oscillator.down() else { return Ok(None) };
+        let fit = self.fit(report, samples, oscillator, down);
         let curves: Vec<save::Curve> =
             curves(&fit, oscillator, false).into_iter().map(|(curve, _)| curve).collect();
         if format == Format::Csv {
@@ -155,10 +159,10 @@ impl Oscillation {
             let rows: Vec<(f64, Vec<f64>)> = (0..fit.moments.len())
                 .map(|row| (fit.moments[row].time, curves.iter().map(|curve| curve.points[row].1).collect()))
                 .collect();
-            return Some(save::rows(report, "oscillation", &header, &rows));
+            return Ok(Some(save::rows(report, "oscillation", &header, &rows)));
         }
         let upwards = "from where it would hang (m)".to_owned();
-        save::chart(report, "oscillation", "time (s)".to_owned(), upwards, curves, format)
+        save::chart(report, "oscillation", "time (s)".to_owned(), upwards, curves, format).map(Some)
     }
 
     /// Whatever changes parameters or places starts the comparison anew.

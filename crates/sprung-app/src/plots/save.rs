@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use egui_plot::LineStyle;
+use sprung::{Code, Error, Result};
 use sprung_driver::{Probe, Report, Sample};
 use sprung_render::plot::{self, Chart};
 
 use super::entries::ENTRIES;
 use super::quantity;
 use super::value;
-use crate::media::SaveRequest;
+use crate::media::{SaveRequest, file_stem};
 
 /// A format that plots are saved in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,21 +66,24 @@ pub struct Curve {
 }
 
 /// The energy ledger.
-pub fn ledger(report: &Report, samples: &[&Sample], format: Format) -> Option<SaveRequest> {
+///
+/// # Errors
+/// If the picture cannot be encoded, as with all pictures here.
+pub fn ledger(report: &Report, samples: &[&Sample], format: Format) -> Result<SaveRequest> {
     if format == Format::Csv {
         let header = ENTRIES.iter().map(|entry| format!("{} (J)", entry.name)).collect::<Vec<_>>();
         let row = |sample: &Sample| ENTRIES.iter().map(|entry| Some((entry.value)(&sample.energy))).collect();
-        return Some(request(report, "energy", format, table(&header, samples, row).into_bytes()));
+        return Ok(csv(report, "energy", table(&header, samples, row)));
     }
     let energies: Vec<_> = samples.iter().map(|sample| (sample.time, sample.energy)).collect();
     picture(report, "energy", &plot::energy_chart(&title(report, "energy"), &energies), format)
 }
 
 /// The recorded values of some probes as a table; cells are empty where nothing was recorded.
-pub fn values(report: &Report, samples: &[&Sample], probes: &[Probe]) -> Option<SaveRequest> {
+pub fn values(report: &Report, samples: &[&Sample], probes: &[Probe]) -> SaveRequest {
     let header: Vec<String> = probes.iter().map(|probe| quantity::axis(*probe)).collect();
     let row = |sample: &Sample| probes.iter().map(|probe| value(sample, *probe)).collect();
-    Some(request(report, "traces", Format::Csv, table(&header, samples, row).into_bytes()))
+    csv(report, "traces", table(&header, samples, row))
 }
 
 /// A table of anything against time.
@@ -90,10 +94,18 @@ pub fn rows(report: &Report, what: &str, header: &[String], rows: &[(f64, Vec<f6
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{time},{}", cells.join(","));
     }
+    csv(report, what, text)
+}
+
+/// A table that is ready.
+pub fn csv(report: &Report, what: &str, text: String) -> SaveRequest {
     request(report, what, Format::Csv, text.into_bytes())
 }
 
 /// Some curves as a picture.
+///
+/// # Errors
+/// If it cannot be encoded.
 pub fn chart(
     report: &Report,
     what: &str,
@@ -101,7 +113,7 @@ pub fn chart(
     upwards: String,
     curves: Vec<Curve>,
     format: Format,
-) -> Option<SaveRequest> {
+) -> Result<SaveRequest> {
     let curves = curves.into_iter().map(|Curve { name, colour, style, points }| plot::Curve {
         name,
         colour,
@@ -138,12 +150,14 @@ fn table(header: &[String], samples: &[&Sample], row: impl Fn(&Sample) -> Vec<Op
     text
 }
 
-fn picture(report: &Report, what: &str, chart: &Chart, format: Format) -> Option<SaveRequest> {
+fn picture(report: &Report, what: &str, chart: &Chart, format: Format) -> Result<SaveRequest> {
     let bytes = match format {
         Format::Svg => chart.svg(plot::SIZE).into_bytes(),
-        _ => chart.png(plot::SIZE).ok()?,
+        _ => chart
+            .png(plot::SIZE)
+            .map_err(|error| Error::new(Code::Unwritable, format!("the plot cannot be encoded: {error}")))?,
     };
-    Some(request(report, what, format, bytes))
+    Ok(request(report, what, format, bytes))
 }
 
 fn title(report: &Report, what: &str) -> String {
@@ -156,7 +170,7 @@ fn request(report: &Report, what: &str, format: Format, bytes: Vec<u8>) -> SaveR
         Format::Svg => "svg",
         Format::Png => "png",
     };
-    SaveRequest { name: format!("{}-{what}.{ending}", report.opened.name), bytes }
+    SaveRequest { name: format!("{}-{what}.{ending}", file_stem(&report.opened.name)), bytes }
 }
 
 #[cfg(test)]

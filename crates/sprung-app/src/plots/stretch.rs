@@ -2,6 +2,7 @@
 
 use egui::{Stroke, Ui};
 use egui_plot::{Bar, BarChart, Line, LineStyle, PlotPoints};
+use sprung::Result;
 use sprung_driver::{Command, Report};
 
 use super::canvas::{Canvas, Sheet, reading, swatch};
@@ -102,15 +103,17 @@ impl Stretch {
     }
 
     /// The bars as a file.
-    pub fn save(report: &Report, chain: &Chain, format: Format) -> Option<SaveRequest> {
+    ///
+    /// # Errors
+    /// If the picture cannot be encoded.
+    pub fn save(report: &Report, chain: &Chain, format: Format) -> Result<SaveRequest> {
         let (measured, exact) = (measured(report, chain), formula(chain));
         if format == Format::Csv {
             let mut text = "spring,measured (m),formula (m)\n".to_owned();
             for ((spring, measured), exact) in chain.springs.iter().zip(&measured).zip(&exact) {
                 text.push_str(&format!("{spring},{measured},{exact}\n"));
             }
-            let name = format!("{}-stretch.csv", report.opened.name);
-            return Some(SaveRequest { name, bytes: text.into_bytes() });
+            return Ok(save::csv(report, "stretch", text));
         }
         let curve = |name: &str, colour, style, values: &[f64]| save::Curve {
             name: name.to_owned(),

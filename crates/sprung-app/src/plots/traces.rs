@@ -2,6 +2,7 @@
 
 use egui::{Color32, Ui};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
+use sprung::Result;
 use sprung_driver::{Probe, Report, Sample};
 
 use super::canvas::{self, Canvas, Sheet, reading, swatch};
@@ -127,7 +128,10 @@ impl Traces {
     }
 
     /// The traces as a file.
-    pub fn save(&self, report: &Report, samples: &[&Sample], format: save::Format) -> Option<SaveRequest> {
+    ///
+    /// # Errors
+    /// If the picture cannot be encoded.
+    pub fn save(&self, report: &Report, samples: &[&Sample], format: save::Format) -> Result<SaveRequest> {
         let curves: Vec<save::Curve> = self
             .kept
             .iter()
@@ -139,7 +143,7 @@ impl Traces {
             })
             .collect();
         match format {
-            save::Format::Csv => save::values(report, samples, &self.probes()),
+            save::Format::Csv => Ok(save::values(report, samples, &self.probes())),
             _ => save::chart(
                 report,
                 "traces",

@@ -8,7 +8,7 @@ use sprung_render::gpu::Marks;
 use web_time::{Duration, Instant};
 
 use super::canvas::Canvas;
-use crate::media::{self, FilmClock, PictureSize, SaveRequest};
+use crate::media::{self, FilmClock, PictureSize, SaveRequest, file_stem};
 use crate::state::AppState;
 
 /// How long a film may be written before the window is drawn again, s.
@@ -231,13 +231,6 @@ fn size_of(size: PictureSize, pixels: [u32; 2]) -> [u32; 2] {
     [width, height].map(|side| side.clamp(16, LARGEST))
 }
 
-/// A scene's name as part of a file's: letters, digits, dashes.
-fn file_stem(name: &str) -> String {
-    let keep = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
-    let stem: String = name.chars().take(60).map(keep).collect();
-    if stem.trim_matches(['-', '.']).is_empty() { "scene".to_owned() } else { stem }
-}
-
 fn no_card() -> Error {
     let sentence = "a picture of what is seen is drawn by a graphics driver, and this window has none";
     Error::new(Code::Unsupported, sentence).with_fix("use `sprung run SCENE -o NAME.png`")
@@ -255,11 +248,9 @@ mod tests {
     }
 
     #[test]
-    fn sizes_and_names_are_allowed_ones() {
+    fn sizes_are_allowed_ones() {
         assert_eq!(size_of(PictureSize::Window, [3, 700]), [16, 700]);
         assert_eq!(size_of(PictureSize::Twice, [6000, 700]), [8192, 1400]);
         assert_eq!(size_of(PictureSize::FullHd, [1, 1]), [1920, 1080]);
-        assert_eq!(file_stem("a/b\\c: d"), "a-b-c--d");
-        assert_eq!(file_stem("../"), "scene");
     }
 }
