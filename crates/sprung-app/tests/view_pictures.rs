@@ -6,7 +6,7 @@ mod view_support;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use sprung_app::{App, Film, Pick, PictureSize};
+use sprung_app::{App, Film, FilmClock, Pick, PictureSize};
 use sprung_render::appearance::Theme;
 use view_support::*;
 
@@ -109,6 +109,18 @@ fn a_film_follows_the_simulations_time_and_becomes_a_file() {
 }
 
 #[test]
+fn a_clock_that_is_chosen_during_a_film_is_for_the_next_one() {
+    let Some(mut harness) = drawn("spring") else { return };
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::R);
+    harness.run_steps(3);
+    let badge = "recording: 1 picture";
+    assert!(harness.query_by_label(badge).is_some(), "time stands still");
+    state(&mut harness).filming.clock = FilmClock::Real;
+    harness.run_steps(60);
+    assert!(harness.query_by_label(badge).is_some(), "a second of the other clock has passed");
+}
+
+#[test]
 fn a_film_that_is_still_written_leaves_no_file_when_the_window_closes() {
     let Some(mut harness) = drawn("jelly") else { return };
     let folder = tempfile::tempdir().expect("there is room for temporary files");
@@ -148,7 +160,7 @@ fn a_film_is_lost_only_if_that_is_wanted() {
     harness.run_steps(3);
     assert_eq!(state(&mut harness).filming.film, Film::None);
     assert!(harness.query_by_label("Save the film").is_none());
-    assert!(harness.query_by_label_contains("pictures to be saved").is_none());
+    assert!(harness.query_by_label_contains("to be saved").is_none());
 }
 
 #[test]

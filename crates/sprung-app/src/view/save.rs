@@ -17,6 +17,8 @@ const PIECE: f64 = 0.012;
 const LONGEST_PIECE: f64 = 0.25;
 /// The largest side of a picture, pixels.
 const LARGEST: u32 = 8192;
+/// The same picture fills at most so many of a film's at once: a window that stood still leaves no minutes of it.
+const MOST_AT_ONCE: usize = 60;
 
 /// What is being recorded or written.
 #[derive(Default)]
@@ -35,12 +37,29 @@ enum Film {
 /// When the next picture of a film is due.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Clock {
-    /// Time of the film's first picture: simulated or real, s.
+    /// The time that it follows; another choice is for the next film.
+    follows: FilmClock,
+    /// Time of the film's first picture, s; later where a pause was left out, earlier where time was turned back.
     begin: f64,
+    /// Pictures in a second.
     rate: f64,
 }
 
 impl Clock {
+    /// How many pictures a film of so many lacks now: all that it shows until then, if time went on as it should.
+    fn missing(&mut self, taken: usize, now: f64) -> usize {
+        let picture = 1.0 / self.rate;
+        let newest = self.begin + (taken as f64 - 1.0) * picture;
+        if taken > 0 && now < newest - picture {
+            // Time was turned back, and the film goes on from there.
+            self.begin = now - taken as f64 * picture;
+        }
+        let missing = self.due(now).saturating_sub(taken);
+        let left_out = missing.saturating_sub(MOST_AT_ONCE);
+        self.begin += left_out as f64 * picture;
+        missing - left_out
+    }
+
     /// How many pictures there should be at a time: all those that the film shows until then.
     fn due(&self, now: f64) -> usize {
         // A hair earlier, so that a picture due at the very moment of a step is not missed by rounding.
@@ -94,7 +113,8 @@ impl Saver {
                 let rate = f64::from(state.filming.rate.clamp(1, 60));
                 match Recording::new(size, rate) {
                     Ok(recording) => {
-                        let clock = Clock { begin: self.clock(state), rate };
+                        let follows = state.filming.clock;
+                        let clock = Clock { follows, begin: self.time(follows, state), rate };
                         self.film = Film::Recording { recording, clock };
                     }
                     Err(error) => state.refuse(error),
@@ -129,12 +149,8 @@ impl Saver {
         match std::mem::take(&mut self.film) {
             Film::None => return false,
             Film::Recording { mut recording, mut clock } => {
-                let now = self.clock(state);
-                if now < clock.begin {
-                    // Time was turned back, and the film goes on from there.
-                    clock.begin = now - recording.len() as f64 / clock.rate;
-                }
-                let taken = take(&mut recording, clock.due(now), canvas, state, marks);
+                let missing = clock.missing(recording.len(), self.time(clock.follows, state));
+                let taken = take(&mut recording, missing, canvas, state, marks);
                 self.film = Film::Recording { recording, clock };
                 if let Err(error) = taken {
                     // What was recorded so far is kept.
@@ -173,8 +189,8 @@ impl Saver {
     }
 
     /// The time that a film follows, s.
-    fn clock(&self, state: &AppState) -> f64 {
-        match state.filming.clock {
+    fn time(&self, follows: FilmClock, state: &AppState) -> f64 {
+        match follows {
             FilmClock::Simulated => {
                 let (before, now) = (state.report.before.time, state.report.now.time);
                 before + (now - before) * state.report.blend
@@ -187,28 +203,30 @@ impl Saver {
     pub fn badge(&self) -> Option<String> {
         match &self.film {
             Film::None => None,
-            Film::Recording { recording, .. } => Some(format!("recording: {} pictures", recording.len())),
-            Film::Waiting(recording) => Some(format!("{} pictures to be saved", recording.len())),
+            Film::Recording { recording, .. } => Some(format!("recording: {}", pictures(recording.len()))),
+            Film::Waiting(recording) => Some(format!("{} to be saved", pictures(recording.len()))),
             Film::Writing(writing) => Some(format!("writing {:.0} %", 100.0 * writing.share_done())),
         }
     }
 }
 
-/// Takes pictures until there are as many as are due; where the window was slow, the same one again.
+/// Takes the pictures that are missing; where the window was slow, the same one again.
 fn take(
     recording: &mut Recording,
-    due: usize,
+    missing: usize,
     canvas: &mut Canvas,
     state: &AppState,
     marks: &Marks,
 ) -> Result<()> {
-    if recording.len() >= due {
+    if missing == 0 {
         return Ok(());
     }
     let image = canvas.picture(state, marks, recording.size()).ok_or_else(no_card)?;
-    // After a long pause of the window not minutes of the same picture.
-    let missing = (due - recording.len()).min(60);
     (0..missing).try_for_each(|_| recording.push(&image))
+}
+
+fn pictures(count: usize) -> String {
+    if count == 1 { "1 picture".to_owned() } else { format!("{count} pictures") }
 }
 
 fn write(mut writing: Box<Writing>, piece: Duration) -> Result<Progressed> {
@@ -242,9 +260,37 @@ mod tests {
 
     #[test]
     fn a_film_has_as_many_pictures_as_its_time_asks_for() {
-        let clock = Clock { begin: 2.0, rate: 25.0 };
+        let clock = Clock { follows: FilmClock::Real, begin: 2.0, rate: 25.0 };
         assert_eq!([2.0, 2.039, 2.04, 3.0].map(|now| clock.due(now)), [1, 1, 2, 26]);
         assert_eq!(clock.due(0.0), 0);
+    }
+
+    /// Films so many pictures as are missing at each time, and gives how many those were.
+    fn filmed<const N: usize>(times: [f64; N]) -> [usize; N] {
+        let mut clock = Clock { follows: FilmClock::Real, begin: times[0], rate: 25.0 };
+        let mut taken = 0;
+        times.map(|now| {
+            let missing = clock.missing(taken, now);
+            taken += missing;
+            missing
+        })
+    }
+
+    #[test]
+    fn a_long_pause_of_the_window_is_left_out_of_a_film() {
+        // Not caught up with later, either.
+        assert_eq!(filmed([0.0, 0.04, 100.04, 100.06, 100.08, 100.12]), [1, 1, MOST_AT_ONCE, 0, 1, 1]);
+        // A short one is not.
+        assert_eq!(filmed([0.0, 2.0, 2.04]), [1, 50, 1]);
+    }
+
+    #[test]
+    fn a_film_goes_on_where_time_was_turned_back_to() {
+        assert_eq!(filmed([0.0, 1.0, 0.0, 0.04, 0.08]), [1, 25, 1, 1, 1]);
+        assert_eq!(filmed([1.0, 2.0, 1.5, 1.54, 0.0, 0.04]), [1, 25, 1, 1, 1, 1]);
+        assert_eq!(filmed([5.0, 0.0, 0.04]), [1, 1, 1]);
+        // The time shown lies between two steps, and may go back by less than a picture.
+        assert_eq!(filmed([0.0, 1.0, 0.99, 1.0, 1.04]), [1, 25, 0, 0, 1]);
     }
 
     #[test]
