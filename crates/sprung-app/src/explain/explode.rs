@@ -1,6 +1,7 @@
 //! The lesson about the longest stable step: make the jelly explode, understand why, and mend it.
 
-use sprung::{Change, Params, significant, stability};
+use sprung::scene::Scene;
+use sprung::{Change, Params, Result, significant, stability};
 use sprung_driver::{Command, Edit, Pace};
 
 use super::lesson::{Lesson, LessonStep, Memory, Offer};
@@ -220,9 +221,8 @@ fn mend(state: &mut AppState, label: &str, changes: impl Fn(&Params) -> Vec<Chan
 }
 
 /// Changes to the jelly at dt = 0.0125 s, each judged by its true limit.
-fn quiz(state: &AppState) -> Quiz {
-    let opened = &state.report.opened;
-    let (model, own) = (&opened.model, &opened.params);
+fn quiz() -> Result<Quiz> {
+    let (model, own, first_state) = Scene::builtin("jelly")?.build()?;
     let first = |values: &[f32]| values.first().copied().unwrap_or_default();
     let (springs, points) = (0..model.spring_count(), 0..model.point_count());
     let (k, d, m) = (first(&own.spring_stiffness), first(&own.spring_damping), first(&own.point_mass));
@@ -235,12 +235,12 @@ fn quiz(state: &AppState) -> Quiz {
         ("Twice the substeps, with the same dt", Change::Substeps(own.substeps.saturating_mul(2))),
     ];
     let judge = |(text, change): &(&str, Change)| {
-        let mut params = (**own).clone();
+        let mut params = own.clone();
         params.dt = TOO_LONG;
-        if let Err(error) = params.apply(model, change) {
+        if let Err(error) = params.apply(&model, change) {
             return Answer::new(*text, false, error.to_string());
         }
-        let Some(limit) = stability::sharp(model, &params, &opened.first.positions).dt else {
+        let Some(limit) = stability::sharp(&model, &params, &first_state.position).dt else {
             return Answer::new(*text, true, "then nothing limits dt");
         };
         let relation = if TOO_LONG < limit { "below" } else { "above" };
@@ -251,5 +251,5 @@ fn quiz(state: &AppState) -> Quiz {
     let question = format!(
         "With dt = {TOO_LONG} s and all else as at first: which single changes make the cube stable?"
     );
-    Quiz { question, answers: tries.iter().map(judge).collect() }
+    Ok(Quiz { question, answers: tries.iter().map(judge).collect() })
 }

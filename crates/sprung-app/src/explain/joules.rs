@@ -1,6 +1,7 @@
 //! The lesson about the energy ledger: where the energy of a swinging mass goes.
 
-use sprung::{Change, Simulation, significant};
+use sprung::scene::Scene;
+use sprung::{Change, Result, significant};
 use sprung_driver::{Command, Edit, Pace};
 
 use super::lesson::{Lesson, LessonStep, Memory, Offer};
@@ -133,18 +134,19 @@ fn joules(value: f64) -> String {
     if value.abs() < 5e-4 { "0".to_owned() } else { format!("{value:.3}").replace('-', "−") }
 }
 
-/// Runs of the scene's first state, each judged by how much its total energy changes.
-fn quiz(state: &AppState) -> Quiz {
+/// Runs of the mass on a spring, each judged by how much its total energy changes.
+fn quiz() -> Result<Quiz> {
     const SECONDS: f64 = 10.0;
     /// Of the largest kinetic energy on the way.
     const ALLOWED: f64 = 0.02;
+    let scene = Scene::builtin("spring")?;
     let tries: [(&str, f32, f64); 4] = [
         ("No damping, dt = 0.001 s", 0.0, 0.001),
         ("No damping, dt = 0.5 s", 0.0, 0.5),
-        ("The scene's own damping, dt = 0.001 s", f32::NAN, 0.001),
+        ("The spring's own damping, dt = 0.001 s", 1.0, 0.001),
         ("A tenth of that damping, dt = 0.001 s", 0.1, 0.001),
     ];
-    let judge = |&(text, factor, dt): &(&str, f32, f64)| match keeps(state, factor, dt, SECONDS) {
+    let judge = |&(text, factor, dt): &(&str, f32, f64)| match keeps(&scene, factor, dt, SECONDS) {
         Some((change, swing)) => {
             let share = change / swing.max(f64::MIN_POSITIVE);
             let because = format!(
@@ -158,23 +160,16 @@ fn quiz(state: &AppState) -> Quiz {
     };
     let question =
         "Which of these runs keep their total energy within 2 % of the largest kinetic energy?".to_owned();
-    Quiz { question, answers: tries.iter().map(judge).collect() }
+    Ok(Quiz { question, answers: tries.iter().map(judge).collect() })
 }
 
-/// The largest change of the total energy over a run, and the largest kinetic energy on the way, J. A factor that is not a
-/// number leaves the damping as it is; `None` if the run blows up or is too large to be made between two frames.
-fn keeps(state: &AppState, damping_factor: f32, dt: f64, seconds: f64) -> Option<(f64, f64)> {
-    let opened = &state.report.opened;
-    let springs = opened.model.spring_count();
-    if springs > 100 {
-        return None;
-    }
-    let mut run: Simulation = opened.scene.simulation().ok()?;
+/// The largest change of the total energy over a run, and the largest kinetic energy on the way, J; `None` if it blows up.
+fn keeps(scene: &Scene, damping_factor: f32, dt: f64, seconds: f64) -> Option<(f64, f64)> {
+    let mut run = scene.simulation().ok()?;
+    let own = run.params().spring_damping.first().copied().unwrap_or_default();
+    let all = 0..run.model().spring_count();
     run.change(Change::Dt(dt)).ok()?;
-    if damping_factor.is_finite() {
-        let own = opened.params.spring_damping.first().copied().unwrap_or_default();
-        run.change(Change::Damping(0..springs, damping_factor * own)).ok()?;
-    }
+    run.change(Change::Damping(all, damping_factor * own)).ok()?;
     let start = run.energy().total();
     let (mut change, mut swing) = (0.0_f64, 0.0_f64);
     for _ in 0..(seconds / dt).ceil() as u32 {

@@ -1,7 +1,7 @@
 //! Guided lessons: what to do, a way to see that it was done, and on to the next. Each lesson is a list in a file of its own.
 
 use egui::{RichText, Ui};
-use sprung::{BlowUp, stability};
+use sprung::{BlowUp, Result, stability};
 use sprung_driver::Trouble;
 
 use super::quiz::Quiz;
@@ -31,8 +31,8 @@ pub struct LessonStep {
     pub offers: &'static [Offer],
     /// Whether it has been done. Once true, the step stays done.
     pub done: fn(&AppState, &Memory) -> bool,
-    /// Questions to answer, made when the step begins.
-    pub quiz: Option<fn(&AppState) -> Quiz>,
+    /// Questions to answer, made when the step begins, about a built-in scene: whatever is open, they take as long.
+    pub quiz: Option<fn() -> Result<Quiz>>,
 }
 
 /// A button that does what a step asks for.
@@ -90,7 +90,9 @@ impl Running {
         self.memory.began = report.now.time;
         self.memory.serial = report.opened.serial;
         self.memory.own_limit = own_limit(state);
-        self.memory.quiz = self.lesson.steps.get(step).and_then(|step| step.quiz).map(|quiz| quiz(state));
+        let quiz = self.lesson.steps.get(step).and_then(|step| step.quiz);
+        // The scene that it is about comes with the program, and can be built.
+        self.memory.quiz = quiz.and_then(|quiz| quiz().ok());
     }
 }
 

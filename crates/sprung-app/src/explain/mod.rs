@@ -15,6 +15,7 @@ use egui::Ui;
 
 use crate::state::AppState;
 pub use lesson::{LESSONS, Lesson, LessonStep, Offer};
+pub use quiz::{Answer, Quiz};
 pub use stage::{STAGES, Stage, StageInfo};
 
 /// The pages of the panel.
