@@ -13,6 +13,8 @@ use sprung::{Error, Result};
 use sprung_driver::{Report, Source};
 use sprung_io::files::PartialFile;
 
+use crate::media::file_stem;
+
 /// The ending of scene files.
 pub const ENDING: &str = "toml";
 
@@ -28,6 +30,11 @@ pub enum Origin {
 }
 
 impl Origin {
+    /// A file, by a path that still holds when the program is started elsewhere.
+    pub fn file(path: &Path) -> Self {
+        Self::File(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()))
+    }
+
     /// Of a scene that was handed in under this name.
     pub fn of(name: &str, scene: &Scene) -> Self {
         let is_builtin = BUILTIN.iter().any(|builtin| builtin.name == name)
@@ -80,7 +87,9 @@ impl Files {
     pub fn path_to_save(&self) -> PathBuf {
         match &self.origin {
             Origin::File(path) => path.clone(),
-            Origin::Builtin(name) | Origin::Other(name) => PathBuf::from(format!("my-{name}.{ENDING}")),
+            Origin::Builtin(name) | Origin::Other(name) => {
+                PathBuf::from(format!("my-{}.{ENDING}", file_stem(name)))
+            }
         }
     }
 }
@@ -225,6 +234,15 @@ mod tests {
         assert_eq!(refused.text.as_deref(), Some("dt = -1\n"));
         assert_eq!(refused.error.place().line_column.map(|(line, _)| line), Some(1));
         assert!(parse_scene(&[0xff, 0xfe], "x.toml").expect_err("it is no text").text.is_none());
+    }
+
+    #[test]
+    fn a_file_is_found_again_from_elsewhere() {
+        let Origin::File(path) = Origin::file(Path::new("some/where.toml")) else { panic!("it is a file") };
+        assert!(path.is_absolute() && path.ends_with("some/where.toml"), "{}", path.display());
+        assert_eq!(Files::new(Origin::file(&path)).path_to_save(), path);
+        let handed_in = Files::new(Origin::Other("a/b".to_owned()));
+        assert_eq!(handed_in.path_to_save(), Path::new("my-a-b.toml"));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The door to a window of the operating system.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetupCreateNew, wgpu};
@@ -29,6 +30,8 @@ const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
 pub struct Options {
     /// The scene; the last one if none is given, and the jelly at the very first start.
     pub source: Option<Source>,
+    /// The file that this scene was read from, if it was: the next start finds it there, and saving suggests it.
+    pub path: Option<PathBuf>,
     /// Scenes that need more memory than this are refused, bytes. `None`: no limit.
     pub memory_limit: Option<u64>,
 }
@@ -116,7 +119,7 @@ fn rank(adapter: &wgpu::AdapterInfo) -> u32 {
 
 fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App> {
     let settings = Settings::load(context.storage);
-    let (source, origin, refused) = first_source(options.source, &settings)?;
+    let (source, origin, refused) = first_source(options.source, options.path.as_deref(), &settings)?;
     let repaint = context.egui_ctx.clone();
     let limits = sprung_driver::Options { memory_limit: options.memory_limit, ..Default::default() };
     let driver = Driver::with(source, limits)?;
@@ -130,9 +133,13 @@ fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App
 }
 
 /// The scene to begin with; and why it is not the last one, where that is gone.
-fn first_source(given: Option<Source>, settings: &Settings) -> Result<(Source, Origin, Option<Error>)> {
+fn first_source(
+    given: Option<Source>,
+    path: Option<&Path>,
+    settings: &Settings,
+) -> Result<(Source, Origin, Option<Error>)> {
     if let Some(source) = given {
-        let origin = Origin::of(&source.name, &source.scene);
+        let origin = path.map_or_else(|| Origin::of(&source.name, &source.scene), Origin::file);
         return Ok((source, origin, None));
     }
     let mut refused = None;
@@ -262,9 +269,20 @@ mod tests {
     fn a_scene_that_is_gone_is_said_and_the_jelly_opens() {
         let settings =
             Settings { scene: Some(Origin::File("nowhere/at all.toml".into())), ..Settings::default() };
-        let (source, origin, refused) = first_source(None, &settings).expect("the jelly is built in");
+        let (source, origin, refused) = first_source(None, None, &settings).expect("the jelly is built in");
         assert_eq!((source.name.as_str(), origin), ("jelly", Origin::Builtin("jelly".to_owned())));
         assert_eq!(refused.map(|error| error.code()), Some(Code::Unreadable));
+    }
+
+    #[test]
+    fn a_scene_that_was_handed_in_is_found_where_it_came_from() {
+        let given = || Source { name: "mine".to_owned(), scene: Scene::builtin("chain").expect("built in") };
+        let path = std::path::absolute("mine.toml").expect("there is a current folder");
+        let origin = |path: Option<&Path>| {
+            first_source(Some(given()), path, &Settings::default()).expect("it is there").1
+        };
+        assert_eq!(origin(Some(Path::new("mine.toml"))), Origin::File(path));
+        assert_eq!(origin(None), Origin::Other("mine".to_owned()));
     }
 
     #[test]

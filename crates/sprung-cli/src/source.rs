@@ -1,6 +1,6 @@
 //! From what the user typed to a simulation: a built-in scene or a file, changed by `--set`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use sprung::scene::{self, Scene};
@@ -12,7 +12,12 @@ use crate::memory;
 
 /// The scene with its changes, and the name to call it by.
 pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
-    let (name, mut scene) = named(&args.scene)?;
+    scene_and_file(args).map(|(name, scene, _)| (name, scene))
+}
+
+/// The same, and the file that it was read from, if it is not built in.
+pub fn scene_and_file(args: &SceneArgs) -> Result<(String, Scene, Option<PathBuf>)> {
+    let (name, mut scene, file) = named(&args.scene)?;
     for assignment in &args.set {
         let Some((key, value)) = assignment.split_once('=') else {
             let error = Error::new(Code::Syntax, "needs a key and a value, such as dt=0.005");
@@ -20,18 +25,18 @@ pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
         };
         scene.set(key.trim(), value.trim())?;
     }
-    Ok((name, scene))
+    Ok((name, scene, file))
 }
 
-fn named(text: &str) -> Result<(String, Scene)> {
+fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
     let path = Path::new(text);
     let looks_like_a_file = path.extension().is_some() || text.contains(['/', '\\']) || path.exists();
     match Scene::builtin(text) {
-        Ok(scene) => Ok((text.to_owned(), scene)),
+        Ok(scene) => Ok((text.to_owned(), scene, None)),
         Err(_) if looks_like_a_file => {
             let bytes = files::read(path, scene::MAX_BYTES)?;
             let name = path.file_stem().map_or(text.to_owned(), |stem| stem.to_string_lossy().into_owned());
-            Ok((name, Scene::from_bytes(&bytes, text)?))
+            Ok((name, Scene::from_bytes(&bytes, text)?, Some(path.to_owned())))
         }
         Err(error) if path.with_extension("toml").is_file() => {
             Err(error.with_fix(format!("did you mean {text}.toml?")))
@@ -58,4 +63,20 @@ pub fn workers(threads: usize) -> Result<Arc<dyn Workers>> {
     let pool = pool
         .map_err(|error| Error::new(Code::Unsupported, format!("cannot start {threads} threads: {error}")))?;
     Ok(Arc::new(pool))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_knows_the_file_it_was_read_from() {
+        let folder = tempfile::tempdir().expect("there is a disk");
+        let path = folder.path().join("mine.toml");
+        std::fs::write(&path, "[[body]]\nname = \"a\"\npoints = [[0, 0, 0]]\n").expect("it is ours");
+        let args = |scene: &str| SceneArgs { scene: scene.to_owned(), set: Vec::new() };
+        let (name, _, file) = scene_and_file(&args(&path.display().to_string())).expect("it is a scene");
+        assert_eq!((name.as_str(), file), ("mine", Some(path)));
+        assert_eq!(scene_and_file(&args("jelly")).expect("it is built in").2, None);
+    }
 }

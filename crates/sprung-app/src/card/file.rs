@@ -217,7 +217,7 @@ impl FileCard {
         match self.purpose {
             Purpose::Open => {
                 let read = files::read_scene(&path);
-                state.open_or_refuse(read.map(|source| (source, Origin::File(path))));
+                state.open_or_refuse(read.map(|source| (source, Origin::file(&path))));
                 true
             }
             Purpose::Save | Purpose::Picture | Purpose::Film => {
@@ -274,7 +274,7 @@ impl FileCard {
         match written {
             Ok(bytes) => {
                 if self.purpose == Purpose::Save {
-                    state.files.origin = Origin::File(path.to_owned());
+                    state.files.origin = Origin::file(path);
                 }
                 state.say(format!("Saved {} ({bytes} bytes)", path.display()));
                 true

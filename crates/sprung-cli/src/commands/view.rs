@@ -1,7 +1,10 @@
 //! `sprung view`, and `sprung` alone: the window, or the demonstration where there can be none.
 
+use std::path::PathBuf;
+
 #[cfg(not(feature = "window"))]
 use sprung::Error;
+use sprung::scene::Scene;
 use sprung::{Code, Result};
 
 use super::demo;
@@ -14,7 +17,7 @@ use crate::source;
 /// Opens the window on a scene, or on that of last time.
 pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
     // What is wrong with the scene is said before a window is tried.
-    let opened = scene.map(source::scene).transpose()?;
+    let opened = scene.map(source::scene_and_file).transpose()?;
     match window(opened) {
         Err(error) if error.code() == Code::Unsupported => {
             note(format_args!("sprung: {error}. Here is the demonstration instead."));
@@ -24,14 +27,18 @@ pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
     }
 }
 
+/// A scene, the name to call it by, and its file.
+type Opened = (String, Scene, Option<PathBuf>);
+
 #[cfg(feature = "window")]
-fn window(opened: Option<(String, sprung::scene::Scene)>) -> Result<()> {
-    let source = opened.map(|(name, scene)| sprung_app::Source { name, scene });
-    sprung_app::run(sprung_app::Options { source, memory_limit: memory::available() })
+fn window(opened: Option<Opened>) -> Result<()> {
+    let (source, path) =
+        opened.map_or((None, None), |(name, scene, path)| (Some(sprung_app::Source { name, scene }), path));
+    sprung_app::run(sprung_app::Options { source, path, memory_limit: memory::available() })
 }
 
 #[cfg(not(feature = "window"))]
-fn window(_: Option<(String, sprung::scene::Scene)>) -> Result<()> {
+fn window(_: Option<Opened>) -> Result<()> {
     let error = Error::new(Code::Unsupported, "this build of sprung has no window");
     Err(error.with_fix("build it with its default features"))
 }
