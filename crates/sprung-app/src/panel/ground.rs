@@ -5,7 +5,7 @@ use sprung::params::{DAMPING_RANGE, STIFFNESS_RANGE};
 use sprung::{Change, ContactLaw, Plane, Vec3};
 use sprung_driver::Edit;
 
-use super::number::{Asked, Number, Scale, around};
+use super::number::{Asked, Number, Scale, around, own_button};
 use super::params::magnitude;
 use crate::state::AppState;
 
@@ -19,8 +19,15 @@ pub static LAWS: [(ContactLaw, &str, &str); 2] = [
     ),
 ];
 
-/// A change of a plane that was asked for: the plane, and whether it goes on with the last one.
-type Change1 = Option<(Plane, bool)>;
+/// Steeper than this, a plane is a wall or a ceiling, degrees.
+const STEEPEST: f64 = 85.0;
+
+/// A plane that was asked for in the place of another.
+struct PlaneEdit {
+    plane: Plane,
+    /// Whether it goes on with the one asked for last, as in a drag.
+    continues: bool,
+}
 
 /// The section.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
@@ -34,7 +41,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
             if now.len() > 1 {
                 ui.label(RichText::new(format!("Plane {}", index + 1)).strong());
             }
-            if let Some((plane, continues)) = one(ui, plane, own.get(index)) {
+            if let Some(PlaneEdit { plane, continues }) = one(ui, plane, own.get(index)) {
                 let mut planes = now.clone();
                 planes[index] = plane;
                 asked = Some((planes, continues, "ground"));
@@ -64,7 +71,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     }
 }
 
-fn one(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Change1 {
+fn one(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Option<PlaneEdit> {
     let height = Number {
         name: "height y",
         unit: "m",
@@ -74,12 +81,12 @@ fn one(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Change1 {
         slider: f64::from(plane.point.y.min(-30.0))..=f64::from(plane.point.y.max(30.0)),
         scale: Scale::Linear,
     };
-    let mut changed: Change1 = None;
+    let mut changed = None;
     if let Some(Asked { value, continues }) =
         height.show(ui, f64::from(plane.point.y), own.map(|own| f64::from(own.point.y)))
     {
         let point = Vec3::new(plane.point.x, value as f32, plane.point.z);
-        changed = Some((Plane { point, ..*plane }, continues));
+        changed = Some(PlaneEdit { plane: Plane { point, ..*plane }, continues });
     }
     changed = normal(ui, plane, own).or(changed);
     let (k_allowed, d_allowed) = (
@@ -97,7 +104,7 @@ fn one(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Change1 {
         scale: Scale::Logarithmic,
     };
     if let Some(Asked { value, continues }) = stiffness.show(ui, f64::from(plane.stiffness), own_k) {
-        changed = Some((Plane { stiffness: value as f32, ..*plane }, continues));
+        changed = Some(PlaneEdit { plane: Plane { stiffness: value as f32, ..*plane }, continues });
     }
     let own_d = own.map(|own| f64::from(own.damping));
     let damping = Number {
@@ -109,42 +116,73 @@ fn one(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Change1 {
         scale: Scale::Logarithmic,
     };
     if let Some(Asked { value, continues }) = damping.show(ui, f64::from(plane.damping), own_d) {
-        changed = Some((Plane { damping: value as f32, ..*plane }, continues));
+        changed = Some(PlaneEdit { plane: Plane { damping: value as f32, ..*plane }, continues });
     }
-    law(ui, plane).or(changed)
+    law(ui, plane, own).or(changed)
 }
 
-/// The direction out of the ground, as two slopes: any two numbers are a direction, so nothing needs refusing.
-fn normal(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Change1 {
-    let slopes = |normal: Vec3| {
-        let degrees = |side: f32| f64::from(side.atan2(normal.y).to_degrees());
-        [degrees(normal.x), degrees(normal.z)]
-    };
-    let now = slopes(plane.normal);
-    let own = own.map(|own| slopes(own.normal));
-    let mut changed = None;
+/// The direction out of the ground. That of a plane which faces upwards is two slopes: any two numbers are a direction, so
+/// nothing needs refusing. No slope says how a wall or a ceiling stands; it can be levelled.
+fn normal(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Option<PlaneEdit> {
+    let mut asked: Option<(Vec3, bool)> = None;
+    match slopes(plane.normal) {
+        Some(now) => asked = tilts(ui, now),
+        None => {
+            ui.horizontal(|ui| {
+                ui.label("A wall or a ceiling: it has no tilt.");
+                let level = ui.small_button("Level it");
+                if level.on_hover_text("Turns it to face straight up, as a floor.").clicked() {
+                    asked = Some((Vec3::Y, false));
+                }
+            });
+        }
+    }
+    ui.horizontal(|ui| {
+        ui.weak(format!("Normal n = {}", components(plane.normal)));
+        let Some(own) = own else { return };
+        // One button for all of it: two slopes, one after the other, would be off by what rounding does to angles.
+        if own_button(ui, "normal", &components(own.normal), own.normal != plane.normal) {
+            asked = Some((own.normal, false));
+        }
+    });
+    asked.map(|(normal, continues)| PlaneEdit { plane: Plane { normal, ..*plane }, continues })
+}
+
+/// How far a normal leans towards x and z, degrees; `None` for walls and ceilings.
+fn slopes(normal: Vec3) -> Option<[f64; 2]> {
+    let slopes = [normal.x, normal.z].map(|side| f64::from(side.atan2(normal.y).to_degrees()));
+    // What was set to the very limit is a little beyond it once it has become a direction.
+    slopes.iter().all(|slope| slope.abs() < STEEPEST + 0.01).then_some(slopes)
+}
+
+/// The two slopes; gives the normal that was asked for, and whether it goes on with the last one.
+fn tilts(ui: &mut Ui, now: [f64; 2]) -> Option<(Vec3, bool)> {
+    let mut asked = None;
     for (axis, name) in ["tilt to x", "tilt to z"].into_iter().enumerate() {
         let number = Number {
             name,
             unit: "°",
             about: "How far the plane's normal n leans towards an axis, from straight up. Contact forces act along n.",
-            allowed: -85.0..=85.0,
+            allowed: -STEEPEST..=STEEPEST,
             slider: -45.0..=45.0,
             scale: Scale::Linear,
         };
-        if let Some(Asked { value, continues }) = number.show(ui, now[axis], own.map(|own| own[axis])) {
-            let mut tilt = now.map(|degrees| degrees.clamp(-85.0, 85.0).to_radians());
-            tilt[axis] = value.to_radians();
-            let normal = Vec3::new(tilt[0].tan() as f32, 1.0, tilt[1].tan() as f32).normalize();
-            changed = Some((Plane { normal, ..*plane }, continues));
+        if let Some(Asked { value, continues }) = number.show(ui, now[axis], None) {
+            let mut slopes = now;
+            slopes[axis] = value;
+            let [x, z] = slopes.map(|slope| slope.clamp(-STEEPEST, STEEPEST).to_radians().tan() as f32);
+            asked = Some((Vec3::new(x, 1.0, z).normalize(), continues));
         }
     }
-    let n = plane.normal;
-    ui.weak(format!("Normal n = ({:.3}, {:.3}, {:.3})", n.x, n.y, n.z));
-    changed
+    asked
 }
 
-fn law(ui: &mut Ui, plane: &Plane) -> Change1 {
+fn components(normal: Vec3) -> String {
+    let [x, y, z] = normal.to_array().map(|value| format!("{value:.3}").replace('-', "−"));
+    format!("({x}, {y}, {z})")
+}
+
+fn law(ui: &mut Ui, plane: &Plane, own: Option<&Plane>) -> Option<PlaneEdit> {
     let mut changed = None;
     ui.horizontal(|ui| {
         let label = ui.label("contact law");
@@ -154,12 +192,37 @@ fn law(ui: &mut Ui, plane: &Plane) -> Change1 {
             .show_ui(ui, |ui| {
                 for (law, name, about) in LAWS {
                     if ui.selectable_label(plane.law == law, name).on_hover_text(about).clicked() {
-                        changed = Some((Plane { law, ..*plane }, false));
+                        changed = Some(PlaneEdit { plane: Plane { law, ..*plane }, continues: false });
                     }
                 }
             });
         let about = chosen.map_or("", |(_, _, about)| about);
         combo.response.labelled_by(label.id).on_hover_text(about);
+        let own = own.and_then(|own| LAWS.iter().find(|(law, ..)| *law == own.law));
+        if let Some(&(law, name, _)) = own
+            && own_button(ui, "contact law", name, law != plane.law)
+        {
+            changed = Some(PlaneEdit { plane: Plane { law, ..*plane }, continues: false });
+        }
     });
     changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_faces_upwards_has_slopes() {
+        let near = |found: Option<[f64; 2]>, expected: [f64; 2]| {
+            found.is_some_and(|found| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4))
+        };
+        assert!(near(slopes(Vec3::Y), [0.0, 0.0]));
+        assert!(near(slopes(Vec3::new(-1.0, 1.0, 0.0).normalize()), [-45.0, 0.0]));
+        let steepest = STEEPEST.to_radians().tan() as f32;
+        assert!(near(slopes(Vec3::new(steepest, 1.0, -steepest).normalize()), [85.0, -85.0]));
+        for normal in [Vec3::X, Vec3::NEG_Z, Vec3::NEG_Y, Vec3::new(0.6, -0.8, 0.0)] {
+            assert_eq!(slopes(normal), None, "{normal}");
+        }
+    }
 }
