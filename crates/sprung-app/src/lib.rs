@@ -1,8 +1,8 @@
 //! The sprung window: watch, grab and understand mass-spring systems.
 //!
-//! The app never touches a simulation. It sends commands to a driver and draws the newest report. The same code runs
-//! natively and in a browser page: nothing here blocks, starts threads of its own or opens a file, except through
-//! [`files`].
+//! The app never touches a simulation. It sends commands to a driver and draws the newest report. Nothing here waits,
+//! starts a thread or opens a file, but for two doors: [`files`], and [`run`], which opens a window of the operating system
+//! and puts the driver on a thread of its own.
 
 mod action;
 mod app;
@@ -16,6 +16,7 @@ mod panel;
 pub mod plots;
 mod settings;
 mod state;
+mod text;
 mod theme;
 mod timeline;
 mod view;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use sprung::Error;
 use sprung::scene::Scene;
+use sprung::stability::Setter;
 use sprung_driver::{Command, Edit, Handle, Report, Source};
 use sprung_render::appearance::Appearance;
 use sprung_render::turntable::Turntable;
@@ -22,6 +23,15 @@ pub enum Pick {
     Point(usize),
     /// A spring, by its index in the model.
     Spring(usize),
+}
+
+impl From<Setter> for Pick {
+    fn from(setter: Setter) -> Self {
+        match setter {
+            Setter::Point(point) => Self::Point(point),
+            Setter::Spring(spring) => Self::Spring(spring),
+        }
+    }
 }
 
 /// What a press in the scene does.

@@ -84,7 +84,8 @@ fn colours(visuals: &mut Visuals, theme: egui::Theme) {
     }
 }
 
-fn rgb(rgb: u32) -> Color32 {
+/// A colour from 0xrrggbb.
+pub fn rgb(rgb: u32) -> Color32 {
     let [_, red, green, blue] = rgb.to_be_bytes();
     Color32::from_rgb(red, green, blue)
 }

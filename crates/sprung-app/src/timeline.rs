@@ -1,13 +1,12 @@
 //! The timeline: what can be gone back to, what was changed where, and the earlier run beside this one.
 
 use egui::{EventFilter, Key, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
-use sprung::significant;
 use sprung_driver::{Command, Report, Timeline};
 
 use crate::action::Action;
-use crate::icon::{self, IconButton};
-use crate::panel::{Speedometer, action_icon, fixed_width};
+use crate::panel::{Speedometer, action_icon, fixed_width, play_button};
 use crate::state::AppState;
+use crate::text::three_digits;
 use crate::theme::Meaning;
 
 /// Height of the strip, points.
@@ -56,11 +55,7 @@ fn buttons(ui: &mut Ui, state: &mut AppState) {
     for action in [Action::Start, Action::Back] {
         action_icon(ui, state, action);
     }
-    let (icon, name) = if state.report.playing { (icon::PAUSE, "Pause") } else { (icon::PLAY, "Play") };
-    let about = "Plays on from the moment shown, or pauses.";
-    if IconButton::new(icon, name).show(ui).on_hover_text(about).clicked() {
-        state.act(Action::PlayPause);
-    }
+    play_button(ui, state, false);
     for action in [Action::Forward, Action::End] {
         action_icon(ui, state, action);
     }
@@ -111,7 +106,7 @@ fn compare(ui: &mut Ui, state: &mut AppState, has_room: bool) {
         return;
     }
     if let Some(comparison) = &state.report.comparison {
-        let apart = significant(format!("{:.2e}", comparison.apart).parse().unwrap_or(comparison.apart));
+        let apart = three_digits(comparison.apart);
         let text = format!("apart by {apart} m, parted at step {}", comparison.parted);
         ui.label(RichText::new(text).color(Meaning::Warn.colour(ui.visuals())))
             .on_hover_text("The largest distance between the same point in both runs.");

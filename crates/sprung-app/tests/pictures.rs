@@ -16,8 +16,9 @@ use sprung_app::{Action, Pick, Tool};
 use sprung_driver::{Command, Edit, Pull};
 use sprung_render::appearance::ColourBy;
 
-use pictures_support::compare::{compare, updates};
+use pictures_support::compare::compare;
 use pictures_support::png_file::write_with_palette;
+use pictures_support::squares::updates;
 use pictures_support::{Shot, Window, act, can_draw, choose, click, drop_file, enter, play_to};
 use view_support::state;
 

@@ -6,6 +6,7 @@
 
 mod gpu_support;
 mod scenes;
+mod squares;
 
 use std::path::{Path, PathBuf};
 
@@ -18,39 +19,8 @@ use gpu_support::{Set, device};
 use scenes::Motion;
 
 const SIZE: [u32; 2] = [480, 300];
-
-fn read(path: &Path) -> Option<Image> {
-    let file = std::io::BufReader::new(std::fs::File::open(path).ok()?);
-    let mut reader = png::Decoder::new(file).read_info().ok()?;
-    let mut rgb = vec![0; reader.output_buffer_size()?];
-    let frame = reader.next_frame(&mut rgb).ok()?;
-    Some(Image { width: frame.width, height: frame.height, rgb })
-}
-
-/// Drivers may place the samples of a pixel differently and round differently, which moves edges by a fraction of a pixel
-/// and colours by a step or two. So pictures are compared as means over squares of 6 pixels, where a moved edge shifts a
-/// mean by some steps only, and a missing or wrong thing shifts many means by dozens.
+/// Side of the squares in which pictures are compared, pixels.
 const SQUARE: u32 = 6;
-/// The most that a mean may differ, in steps of 255: an edge between black and white, moved by a quarter of a pixel
-/// (half the distance of samples) along a whole square, shifts it by 255/4/6 = 11.
-const TOLERANCE: f64 = 11.0;
-/// The share of squares that may differ more: where several thin lines cross a square, their shifts add up.
-const STRAY_SHARE: f64 = 0.004;
-
-fn means(image: &Image) -> Vec<[f64; 3]> {
-    let mut means = Vec::new();
-    for top in (0..image.height).step_by(SQUARE as usize) {
-        for left in (0..image.width).step_by(SQUARE as usize) {
-            let inside = (0..SQUARE).flat_map(|y| (0..SQUARE).map(move |x| (left + x, top + y)));
-            let found: Vec<[u8; 3]> = inside.filter_map(|(x, y)| image.pixel(x, y)).collect();
-            let mean = |channel: usize| {
-                found.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>() / found.len() as f64
-            };
-            means.push([mean(0), mean(1), mean(2)]);
-        }
-    }
-    means
-}
 
 fn compare(name: &str, found: &Image) {
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/gpu").join(format!("{name}.png"));
@@ -60,24 +30,18 @@ fn compare(name: &str, found: &Image) {
         sprung_render::export::write_png(std::io::BufWriter::new(file), found).expect("it can be written");
     };
     write(&drawn);
-    if std::env::var_os("SPRUNG_UPDATE_PICTURES").is_some() {
+    if squares::updates() {
         std::fs::create_dir_all(stored.parent().expect("it has a folder")).expect("the folder can be made");
         write(&stored);
     }
     let fix = "draw it anew with SPRUNG_UPDATE_PICTURES=1 and look at it";
-    let Some(expected) = read(&stored) else {
+    let Some(expected) = squares::read(&stored) else {
         panic!("there is no stored picture {}; {fix}", stored.display())
     };
     assert_eq!((found.width, found.height), (expected.width, expected.height), "size of {name}");
-    let (a, b) = (means(found), means(&expected));
-    let far = |(a, b): &(&[f64; 3], &[f64; 3])| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > TOLERANCE);
-    let stray = a.iter().zip(&b).filter(far).count() as f64 / a.len() as f64;
-    let (drawn, stored) = (drawn.display(), stored.display());
-    assert!(
-        stray <= STRAY_SHARE,
-        "{drawn} differs from {stored} in {:.1} % of its squares; {fix}",
-        100.0 * stray
-    );
+    if let Some(what) = squares::too_many(&squares::strays(found, &expected, SQUARE)) {
+        panic!("{} differs from {}: {what}; {fix}", drawn.display(), stored.display());
+    }
 }
 
 /// Draws a scene's last moment in both themes, or in the one that is named.

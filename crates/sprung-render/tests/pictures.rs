@@ -3,6 +3,7 @@
 //! `SPRUNG_UPDATE_PICTURES=1 cargo test -p sprung-render` draws the stored ones anew; look at them before committing.
 
 mod scenes;
+mod squares;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -27,32 +28,24 @@ fn write(path: &Path, motion: &Motion, moments: &[Snapshot], options: &Options) 
     output.finish(&mut |_| ControlFlow::Continue(()))
 }
 
-fn read(path: &Path) -> Option<(u32, u32, Vec<u8>)> {
-    let file = std::io::BufReader::new(std::fs::File::open(path).ok()?);
-    let mut reader = png::Decoder::new(file).read_info().ok()?;
-    let mut rgb = vec![0; reader.output_buffer_size()?];
-    let frame = reader.next_frame(&mut rgb).ok()?;
-    Some((frame.width, frame.height, rgb))
-}
-
 fn compare(name: &str, motion: &Motion, at: f64) {
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(format!("{name}.png"));
     let drawn = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
     let options = Options { size: Some([320, 180]), at: Some(at) };
     write(&drawn, motion, &motion.moments, &options).expect("the picture can be drawn");
-    if std::env::var_os("SPRUNG_UPDATE_PICTURES").is_some() {
+    if squares::updates() {
         std::fs::create_dir_all(stored.parent().expect("it has a folder")).expect("the folder can be made");
         std::fs::copy(&drawn, &stored).expect("the picture can be stored");
     }
     let fix = "draw it anew with SPRUNG_UPDATE_PICTURES=1 and look at it";
-    let Some(expected) = read(&stored) else {
+    let Some(expected) = squares::read(&stored) else {
         panic!("there is no stored picture {}; {fix}", stored.display())
     };
-    let found = read(&drawn).expect("the drawn picture can be read");
-    assert_eq!((found.0, found.1), (expected.0, expected.1), "size of {name}");
-    let pixels = found.2.chunks_exact(3).zip(expected.2.chunks_exact(3));
+    let found = squares::read(&drawn).expect("the drawn picture can be read");
+    assert_eq!((found.width, found.height), (expected.width, expected.height), "size of {name}");
+    let pixels = found.rgb.chunks_exact(3).zip(expected.rgb.chunks_exact(3));
     let stray = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > TOLERANCE)).count();
-    let share = 3.0 * stray as f64 / expected.2.len() as f64;
+    let share = 3.0 * stray as f64 / expected.rgb.len() as f64;
     let (drawn, stored) = (drawn.display(), stored.display());
     assert!(share <= STRAY_SHARE, "{stray} pixels of {drawn} differ from {stored}; if that was meant, {fix}");
 }

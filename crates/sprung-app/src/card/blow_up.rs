@@ -10,6 +10,7 @@ use super::error::capital;
 use super::{Part, beside, primary};
 use crate::icon::{self, IconButton};
 use crate::state::{AppState, Pick};
+use crate::text::three_digits;
 use crate::theme::Meaning;
 
 /// How far back it is rewound, s.
@@ -167,7 +168,7 @@ fn what(blow_up: &BlowUp) -> String {
             format!("At t = {time} s (step {step}) a position was no longer a finite number.")
         }
         Cause::EnergyFromNowhere { excess } => {
-            let excess = significant(format!("{excess:.2e}").parse().unwrap_or(excess));
+            let excess = three_digits(excess);
             format!(
                 "Up to t = {time} s (step {step}), more than half of the energy had come from nowhere: {excess} J that nobody \
                  put in."

@@ -172,12 +172,8 @@ fn card(_: &AppState, memory: &Memory) -> String {
 }
 
 fn point_out(state: &mut AppState) {
-    let limit = state.report.stability.certified.map(|limit| limit.setter);
-    let pick = match limit {
-        Some(stability::Setter::Spring(spring)) => Pick::Spring(spring),
-        Some(stability::Setter::Point(point)) => Pick::Point(point),
-        None => return,
-    };
+    let Some(limit) = state.report.stability.certified else { return };
+    let pick = Pick::from(limit.setter);
     state.pointed_out = vec![pick];
     state.selection = Some(pick);
 }

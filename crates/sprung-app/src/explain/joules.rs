@@ -9,6 +9,7 @@ use super::quiz::{Answer, Quiz};
 use crate::action::Action;
 use crate::plots::PlotKind;
 use crate::state::AppState;
+use crate::text::with_minus;
 
 /// A step so long that the integrator's error is seen, s.
 const LONG: f64 = 0.1;
@@ -131,7 +132,7 @@ fn integrator(state: &AppState, _: &Memory) -> String {
 }
 
 fn joules(value: f64) -> String {
-    if value.abs() < 5e-4 { "0".to_owned() } else { format!("{value:.3}").replace('-', "−") }
+    if value.abs() < 5e-4 { "0".to_owned() } else { with_minus(format!("{value:.3}")) }
 }
 
 /// Runs of the mass on a spring, each judged by how much its total energy changes.

@@ -9,6 +9,7 @@ use super::reading::{self, PointReading, SpringReading};
 use super::{STAGES, Stage, StageInfo, formula};
 use crate::action::Action;
 use crate::state::{AppState, Pick};
+use crate::text::with_minus;
 
 /// The step's page.
 #[derive(Default)]
@@ -265,7 +266,7 @@ fn line(ui: &mut Ui, name: &str, value: &str) {
 /// A component of a vector: always seven letters, unless it is huge, so that nothing jumps.
 fn component(value: f64) -> String {
     let size = value.abs();
-    let text = if !value.is_finite() {
+    with_minus(if !value.is_finite() {
         format!("{:>7}", "—")
     } else if size < 5e-5 {
         format!("{:>7}", "0")
@@ -279,8 +280,7 @@ fn component(value: f64) -> String {
         format!("{value:7.0}")
     } else {
         format!("{value:7.1e}")
-    };
-    text.replace('-', "−")
+    })
 }
 
 /// A single number with its sign.
@@ -288,9 +288,11 @@ fn number(value: f64) -> String {
     if !value.is_finite() {
         return "—".to_owned();
     }
-    let text =
-        if value.abs() < 5e-6 { "0".to_owned() } else { sprung::significant((value * 1e5).round() / 1e5) };
-    text.replace('-', "−")
+    with_minus(if value.abs() < 5e-6 {
+        "0".to_owned()
+    } else {
+        sprung::significant((value * 1e5).round() / 1e5)
+    })
 }
 
 #[cfg(test)]

@@ -1,18 +1,17 @@
 //! The bar at the top: play, pause, step, pace, undo, and what of the window is shown.
 
-use egui::{ComboBox, Role, Ui, WidgetInfo, vec2};
+use egui::{ComboBox, Role, Ui, WidgetInfo};
 use sprung_driver::{Command, Pace};
 
-use super::{action_button, action_icon, action_toggle, undo_and_redo};
+use super::{action_button, action_icon, action_toggle, play_button, undo_and_redo};
 use crate::action::Action;
-use crate::icon::{self, IconButton};
 use crate::state::{AppState, Tool};
 
 /// The bar; what does not fit goes on in another row.
 pub fn bar(ui: &mut Ui, state: &mut AppState) {
     ui.add_space(2.0);
     ui.horizontal_wrapped(|ui| {
-        play_button(ui, state);
+        play_button(ui, state, true);
         for action in [Action::Step, Action::Frame, Action::Reset] {
             action_button(ui, state, action);
         }
@@ -34,15 +33,6 @@ pub fn bar(ui: &mut Ui, state: &mut AppState) {
         }
     });
     ui.add_space(1.0);
-}
-
-fn play_button(ui: &mut Ui, state: &mut AppState) {
-    let (icon, name) = if state.report.playing { (icon::PAUSE, "Pause") } else { (icon::PLAY, "Play") };
-    // As wide for both words, so that the row does not jump.
-    let button = IconButton::new(icon, name).text(name).with(|button| button.min_size(vec2(76.0, 0.0)));
-    if button.show(ui).on_hover_text(Action::PlayPause.info().tooltip(ui.ctx())).clicked() {
-        state.act(Action::PlayPause);
-    }
 }
 
 fn pace(ui: &mut Ui, state: &mut AppState) {

@@ -8,6 +8,7 @@ use sprung_driver::Edit;
 use super::number::{Asked, Number, Scale, around, own_button};
 use super::params::magnitude;
 use crate::state::AppState;
+use crate::text::with_minus;
 
 /// How contact laws are called, and what they say.
 pub static LAWS: [(ContactLaw, &str, &str); 2] = [
@@ -178,7 +179,7 @@ fn tilts(ui: &mut Ui, now: [f64; 2]) -> Option<(Vec3, bool)> {
 }
 
 fn components(normal: Vec3) -> String {
-    let [x, y, z] = normal.to_array().map(|value| format!("{value:.3}").replace('-', "−"));
+    let [x, y, z] = normal.to_array().map(|value| with_minus(format!("{value:.3}")));
     format!("({x}, {y}, {z})")
 }
 

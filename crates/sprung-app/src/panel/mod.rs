@@ -17,10 +17,10 @@ pub use number::fixed_width;
 pub use params::PLANETS;
 pub use speed::Speedometer;
 
-use egui::{CollapsingHeader, Id, Margin, Response, RichText, ScrollArea, Ui};
+use egui::{CollapsingHeader, Id, Margin, Response, RichText, ScrollArea, Ui, vec2};
 
 use crate::action::Action;
-use crate::icon::IconButton;
+use crate::icon::{self, IconButton};
 use crate::state::AppState;
 
 /// Room for the scroll bar, so that it covers nothing.
@@ -96,6 +96,17 @@ pub fn action_icon(ui: &mut Ui, state: &mut AppState, action: Action) -> Respons
 /// As [`action_icon`], for what is either on or off.
 pub fn action_toggle(ui: &mut Ui, state: &mut AppState, action: Action, on: bool) -> Response {
     finish(ui, state, action, IconButton::new(action.info().icon, action.info().name).selected(on))
+}
+
+/// The button that plays or pauses, with the sign of what it would do; with its word, too, where that is wanted.
+pub fn play_button(ui: &mut Ui, state: &mut AppState, has_text: bool) -> Response {
+    let (icon, name) = if state.report.playing { (icon::PAUSE, "Pause") } else { (icon::PLAY, "Play") };
+    let mut button = IconButton::new(icon, name);
+    if has_text {
+        // As wide for both words, so that the row does not jump.
+        button = button.text(name).with(|button| button.min_size(vec2(76.0, 0.0)));
+    }
+    finish(ui, state, Action::PlayPause, button)
 }
 
 /// The buttons to undo and redo, which say what they would do.

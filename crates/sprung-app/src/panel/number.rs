@@ -11,6 +11,7 @@ use egui::{
 use sprung::significant;
 
 use crate::icon::{self, IconButton};
+use crate::text::rounded;
 use crate::theme::Meaning;
 
 /// Width of the column of names, points.
@@ -184,7 +185,7 @@ impl Number<'_> {
             return None;
         }
         // Positions of a mouse have no six digits.
-        let rounded: f64 = if self.scale == Scale::Whole { moved.round() } else { three_digits(moved) };
+        let rounded: f64 = if self.scale == Scale::Whole { moved.round() } else { rounded(moved, 3) };
         let value = rounded.clamp(*self.allowed.start(), *self.allowed.end());
         Some(Asked { value, continues })
     }
@@ -275,16 +276,12 @@ pub fn fixed_width<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -
 
 /// A range for a slider around a scene's own value: two powers of ten to both sides; `usual` where that is zero.
 pub fn around(own: f64, usual: RangeInclusive<f64>) -> RangeInclusive<f64> {
-    if own == 0.0 { usual } else { three_digits(own * 0.01)..=three_digits(own * 100.0) }
+    if own == 0.0 { usual } else { rounded(own * 0.01, 3)..=rounded(own * 100.0, 3) }
 }
 
 /// The smallest step away from zero on a logarithmic slider.
 fn smallest_positive(range: &RangeInclusive<f64>) -> f64 {
     if *range.start() > 0.0 { *range.start() } else { 1e-5 * range.end() }
-}
-
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 fn shortened(text: &str) -> String {

@@ -9,6 +9,7 @@ use super::action_button;
 use crate::action::Action;
 use crate::files::Origin;
 use crate::state::AppState;
+use crate::text::thousands;
 
 /// A built-in scene as the panel shows it.
 pub struct Entry {
@@ -43,7 +44,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     ui.add(egui::Label::new(RichText::new(title).heading()).wrap()).on_hover_text(&opened.scene.description);
     let (points, springs) = (opened.model.point_count(), opened.model.spring_count());
     let count = |count: usize, one: &str| {
-        if count == 1 { format!("1 {one}") } else { format!("{} {one}s", with_spaces(count)) }
+        if count == 1 { format!("1 {one}") } else { format!("{} {one}s", thousands(count)) }
     };
     ui.weak(format!("{}, {}", count(points, "point"), count(springs, "spring")));
     ui.add_space(4.0);
@@ -72,7 +73,8 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     });
 }
 
-fn of_kind(kind: Kind) -> impl Iterator<Item = &'static Entry> {
+/// The built-in scenes of a kind, in order.
+pub fn of_kind(kind: Kind) -> impl Iterator<Item = &'static Entry> {
     entries().iter().filter(move |entry| entry.kind == kind)
 }
 
@@ -95,19 +97,6 @@ pub fn scene_button(ui: &mut Ui, state: &mut AppState, entry: &Entry, text: &str
     clicked
 }
 
-/// A count with thin spaces between thousands.
-fn with_spaces(count: usize) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{2009}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,15 +106,6 @@ mod tests {
         assert_eq!(entries().len(), BUILTIN.len());
         for entry in entries() {
             assert!(!entry.title.is_empty() && !entry.description.is_empty(), "{}", entry.name);
-        }
-    }
-
-    #[test]
-    fn thousands_are_parted() {
-        for (count, text) in
-            [(5, "5"), (999, "999"), (7560, "7\u{2009}560"), (1234567, "1\u{2009}234\u{2009}567")]
-        {
-            assert_eq!(with_spaces(count), text);
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The stability meter: how near dt is to where the simulation explodes, and what sets the limit.
 
 use egui::{Color32, Rect, Sense, Ui, pos2, vec2};
-use sprung::significant;
-use sprung::stability::{Limit, Setter};
+use sprung::stability::Limit;
 use sprung_driver::{Command, Stability};
 
 use crate::icon::{self, IconButton};
 use crate::state::{AppState, Pick};
+use crate::text::three_digits;
 use crate::theme::Meaning;
 
 /// Height of the bar, points.
@@ -142,7 +142,7 @@ fn numbers(ui: &mut Ui, dt: f64, stability: &Stability) {
         for (name, seconds) in rows {
             let Some(seconds) = seconds else { continue };
             ui.weak(name);
-            ui.monospace(format!("{:<10}", format!("{} s", significant(three(seconds)))));
+            ui.monospace(format!("{:<10}", format!("{} s", three_digits(seconds))));
             let share = if name == "dt" { String::new() } else { percent(dt / seconds) };
             ui.monospace(format!("{share:>7}"));
             ui.end_row();
@@ -150,20 +150,13 @@ fn numbers(ui: &mut Ui, dt: f64, stability: &Stability) {
     });
 }
 
-fn three(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
-}
-
 /// What sets the certified limit; a click points it out in the scene.
 fn setter(ui: &mut Ui, state: &mut AppState, limit: Limit) {
-    let (pick, text) = match limit.setter {
-        Setter::Spring(spring) => {
-            (Pick::Spring(spring), format!("Set by {}", state.report.opened.model.spring_name(spring)))
-        }
-        Setter::Point(point) => {
-            let name = state.report.opened.model.point_name(point);
-            (Pick::Point(point), format!("Set by the contact or grab at {name}"))
-        }
+    let model = &state.report.opened.model;
+    let pick = Pick::from(limit.setter);
+    let text = match pick {
+        Pick::Spring(spring) => format!("Set by {}", model.spring_name(spring)),
+        Pick::Point(point) => format!("Set by the contact or grab at {}", model.point_name(point)),
     };
     let is_out = state.pointed_out.contains(&pick);
     let about = "Points it out in the scene and chooses it; once more, and it does not.";
@@ -179,6 +172,8 @@ fn setter(ui: &mut Ui, state: &mut AppState, limit: Limit) {
 
 #[cfg(test)]
 mod tests {
+    use sprung::stability::Setter;
+
     use super::*;
 
     #[test]

@@ -3,6 +3,8 @@
 use egui::{Color32, Stroke, Ui};
 use egui_plot::{LineStyle, Plot, PlotPoint, PlotUi, VLine};
 
+use crate::text::with_minus;
+
 /// Points of one curve that are drawn at the most: more than there are pixels.
 const MOST_POINTS: usize = 1600;
 
@@ -74,7 +76,7 @@ impl Canvas {
 /// A number for an axis: at most seven letters, without noise from rounding.
 pub fn short(value: f64) -> String {
     let size = value.abs();
-    let text = if value == 0.0 || size < 1e-12 {
+    with_minus(if value == 0.0 || size < 1e-12 {
         "0".to_owned()
     } else if (1e-3..1e6).contains(&size) {
         let rounded = format!("{value:.4}");
@@ -82,23 +84,7 @@ pub fn short(value: f64) -> String {
         if size >= 1e3 { format!("{value:.0}") } else { trimmed.to_owned() }
     } else {
         format!("{value:.1e}")
-    };
-    text.replace('-', "−")
-}
-
-/// A reading, with a width that hardly changes: four significant digits.
-pub fn reading(value: f64) -> String {
-    let size = value.abs();
-    let text = match size {
-        _ if !value.is_finite() => "—".to_owned(),
-        _ if size < 1e-9 => "0".to_owned(),
-        _ if !(1e-3..1e6).contains(&size) => format!("{value:.2e}"),
-        _ if size >= 1000.0 => format!("{value:.0}"),
-        _ if size >= 100.0 => format!("{value:.1}"),
-        _ if size >= 10.0 => format!("{value:.2}"),
-        _ => format!("{value:.3}"),
-    };
-    text.replace('-', "−")
+    })
 }
 
 /// A curve without what is not finite, of at most some 1,600 points: of each stretch the lowest and the highest, so that no
@@ -157,10 +143,6 @@ mod tests {
         assert_eq!(
             [0.0, 0.1 + 0.2, -2.5, 12_345.6, 4e7, 2e-5].map(short),
             ["0", "0.3", "−2.5", "12346", "4.0e7", "2.0e−5"]
-        );
-        assert_eq!(
-            [0.0, 12.3456, -123.4, 8.0, f64::NAN].map(reading),
-            ["0", "12.35", "−123.4", "8.000", "—"]
         );
     }
 

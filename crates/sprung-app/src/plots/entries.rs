@@ -4,6 +4,8 @@ use egui::Color32;
 use egui_plot::LineStyle;
 use sprung::Energy;
 
+use crate::theme::rgb;
+
 /// An entry of the energy ledger.
 pub struct Entry {
     /// What the legend calls it.
@@ -27,7 +29,7 @@ pub struct Entry {
 impl Entry {
     /// Its colour on the background of a theme.
     pub fn colour(&self, dark: bool) -> Color32 {
-        colour(self.colours[usize::from(dark)])
+        rgb(self.colours[usize::from(dark)])
     }
 
     /// What its tooltip says.
@@ -40,11 +42,6 @@ impl Entry {
         let zero = if self.from_start { (self.value)(first) } else { 0.0 };
         (self.value)(energy) - zero
     }
-}
-
-/// A colour from 0xrrggbb.
-pub fn colour(rgb: u32) -> Color32 {
-    Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
 const SOLID: LineStyle = LineStyle::Solid;

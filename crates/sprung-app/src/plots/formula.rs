@@ -2,8 +2,9 @@
 
 use egui::Ui;
 use sprung::Result;
-use sprung_driver::{Probe, Report, Sample};
+use sprung_driver::{Probe, Report};
 
+use super::Page;
 use super::canvas::Canvas;
 use super::oscillation::Oscillation;
 use super::save::Format;
@@ -42,20 +43,13 @@ impl Formula {
     }
 
     /// The plot, or the reason why there is none.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        state: &mut AppState,
-        report: &Report,
-        samples: &[&Sample],
-        canvas: &mut Canvas,
-    ) {
+    pub fn show(&mut self, ui: &mut Ui, state: &mut AppState, page: Page<'_>, canvas: &mut Canvas) {
         self.is_wanted = true;
         match &self.shape {
             Some(Shape::Oscillator(oscillator)) => {
-                self.oscillation.show(ui, state, report, samples, oscillator, canvas);
+                self.oscillation.show(ui, state, page, oscillator, canvas);
             }
-            Some(Shape::Chain(chain)) => self.stretch.show(ui, state, report, chain, canvas),
+            Some(Shape::Chain(chain)) => self.stretch.show(ui, state, page, chain, canvas),
             None => no_formula(ui, state),
         }
     }
@@ -64,10 +58,10 @@ impl Formula {
     ///
     /// # Errors
     /// If the picture cannot be encoded.
-    pub fn save(&self, report: &Report, samples: &[&Sample], format: Format) -> Result<Option<SaveRequest>> {
+    pub fn save(&self, page: Page<'_>, format: Format) -> Result<Option<SaveRequest>> {
         match &self.shape {
-            Some(Shape::Oscillator(oscillator)) => self.oscillation.save(report, samples, oscillator, format),
-            Some(Shape::Chain(chain)) => Stretch::save(report, chain, format).map(Some),
+            Some(Shape::Oscillator(oscillator)) => self.oscillation.save(page, oscillator, format),
+            Some(Shape::Chain(chain)) => Stretch::save(page, chain, format).map(Some),
             None => Ok(None),
         }
     }

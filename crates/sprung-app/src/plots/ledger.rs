@@ -3,11 +3,13 @@
 use egui::{Stroke, Ui};
 use egui_plot::{FilledArea, Line, LineStyle, PlotPoints, PlotUi};
 use sprung::Energy;
-use sprung_driver::{Command, Report, Sample};
+use sprung_driver::{Command, Sample};
 
-use super::canvas::{self, Canvas, Sheet, reading, swatch};
+use super::Page;
+use super::canvas::{self, Canvas, Sheet, swatch};
 use super::entries::ENTRIES;
 use crate::state::AppState;
+use crate::text::steady;
 
 /// How the ledger is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,14 +50,8 @@ impl LedgerPlot {
     }
 
     /// The plot of some samples, with its legend.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        state: &mut AppState,
-        report: &Report,
-        samples: &[&Sample],
-        canvas: &mut Canvas,
-    ) {
+    pub fn show(&mut self, ui: &mut Ui, state: &mut AppState, page: Page<'_>, canvas: &mut Canvas) {
+        let Page { report, samples } = page;
         self.say_if_not_whole(ui, state);
         let mut first = samples.first().map(|sample| sample.energy).unwrap_or_default();
         if self.drawing == Drawing::Stack {
@@ -179,7 +175,7 @@ fn legend(
             swatch(ui, entry.colour(dark), style, *shown);
             toggle(ui, shown, entry.name).on_hover_text(entry.tooltip());
             if let Some((_, energy)) = read.filter(|_| wide) {
-                let value = reading(entry.reading(&energy, first));
+                let value = steady(entry.reading(&energy, first));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.monospace(value));
             }
         });

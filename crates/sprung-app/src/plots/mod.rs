@@ -43,6 +43,15 @@ impl PlotKind {
     ];
 }
 
+/// What a plot shows, the same for all that lies on it.
+#[derive(Clone, Copy)]
+struct Page<'a> {
+    /// How the simulation is, or was when the plot was held.
+    report: &'a Report,
+    /// The samples to show, in order of time.
+    samples: &'a [&'a Sample],
+}
+
 /// How much of the run is shown when only its end is, s.
 const RECENT: f64 = 10.0;
 
@@ -79,11 +88,12 @@ impl Plots {
         let samples = self.visible(&report);
         self.formula.follow(&report);
         ui.add_space(4.0);
-        ui.horizontal_wrapped(|ui| self.bar(ui, state, &report, &samples));
+        let page = Page { report: &report, samples: &samples };
+        ui.horizontal_wrapped(|ui| self.bar(ui, state, page));
         match state.plot {
-            PlotKind::Energy => self.ledger.show(ui, state, &report, &samples, &mut self.canvas),
-            PlotKind::Traces => self.traces.show(ui, state, &report, &samples, &mut self.canvas),
-            PlotKind::Formula => self.formula.show(ui, state, &report, &samples, &mut self.canvas),
+            PlotKind::Energy => self.ledger.show(ui, state, page, &mut self.canvas),
+            PlotKind::Traces => self.traces.show(ui, state, page, &mut self.canvas),
+            PlotKind::Formula => self.formula.show(ui, state, page, &mut self.canvas),
         }
         self.watch(state);
     }
@@ -97,7 +107,7 @@ impl Plots {
         all.filter(|sample| sample.time >= report.now.time - RECENT).collect()
     }
 
-    fn bar(&mut self, ui: &mut Ui, state: &mut AppState, report: &Report, samples: &[&Sample]) {
+    fn bar(&mut self, ui: &mut Ui, state: &mut AppState, page: Page<'_>) {
         for (kind, name, description) in PlotKind::ALL {
             ui.selectable_value(&mut state.plot, kind, name).on_hover_text(description);
         }
@@ -140,9 +150,9 @@ impl Plots {
             for format in save::FORMATS {
                 if ui.button(format.name).on_hover_text(format.description).clicked() {
                     let request = match state.plot {
-                        PlotKind::Energy => save::ledger(report, samples, format.format).map(Some),
-                        PlotKind::Traces => self.traces.save(report, samples, format.format).map(Some),
-                        PlotKind::Formula => self.formula.save(report, samples, format.format),
+                        PlotKind::Energy => save::ledger(page, format.format).map(Some),
+                        PlotKind::Traces => self.traces.save(page, format.format).map(Some),
+                        PlotKind::Formula => self.formula.save(page, format.format),
                     };
                     match request {
                         Ok(Some(request)) => state.save_requests.push(request),

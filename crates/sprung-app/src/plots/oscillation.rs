@@ -5,14 +5,15 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 use sprung::{Change, DVec3, Result};
 use sprung_driver::{Command, Edit, Probe, Report, Sample};
 
-use super::canvas::{self, Canvas, Sheet, reading, swatch};
-use super::entries::colour;
+use super::canvas::{self, Canvas, Sheet, swatch};
 use super::exact::{self, Damped};
 use super::save::{self, Format};
 use super::shape::Oscillator;
-use super::value;
+use super::{Page, value};
 use crate::media::SaveRequest;
 use crate::state::AppState;
+use crate::text::{steady, with_minus};
+use crate::theme::rgb;
 
 /// A motion that leaves the vertical by less than this part of the length counts as vertical.
 const UPRIGHT: f64 = 1e-3;
@@ -77,16 +78,16 @@ impl Oscillation {
         &mut self,
         ui: &mut Ui,
         state: &mut AppState,
-        report: &Report,
-        samples: &[&Sample],
+        page: Page<'_>,
         oscillator: &Oscillator,
         canvas: &mut Canvas,
     ) {
+        let report = page.report;
         let Some(down) = oscillator.down() else {
             ui.label("Without gravity there is no place to hang at. Switch gravity on to compare with the formula.");
             return;
         };
-        let fit = self.fit(report, samples, oscillator, down);
+        let fit = self.fit(page, oscillator, down);
         ui.horizontal_wrapped(|ui| {
             self.buttons(ui, state, report, oscillator, down);
             ui.label(explanation(&fit, oscillator));
@@ -115,7 +116,7 @@ impl Oscillation {
                     }
                     let marks =
                         Points::new("crossings", PlotPoints::new(marks)).shape(MarkerShape::Up).radius(4.5);
-                    plot.points(marks.color(colour(0xe6_9f_00)));
+                    plot.points(marks.color(rgb(0xe6_9f_00)));
                 });
             },
             |ui, wide| {
@@ -128,7 +129,7 @@ impl Oscillation {
                         ui.label(&curve.name);
                         if let Some(value) = value_at(&curve.points, at).filter(|_| wide) {
                             let right = egui::Layout::right_to_left(egui::Align::Center);
-                            ui.with_layout(right, |ui| ui.monospace(reading(value)));
+                            ui.with_layout(right, |ui| ui.monospace(steady(value)));
                         }
                     });
                 }
@@ -145,13 +146,12 @@ impl Oscillation {
     /// If the picture cannot be encoded.
     pub fn save(
         &self,
-        report: &Report,
-        samples: &[&Sample],
+        page: Page<'_>,
         oscillator: &Oscillator,
         format: Format,
     ) -> Result<Option<SaveRequest>> {
         let Some(down) = oscillator.down() else { return Ok(None) };
-        let fit = self.fit(report, samples, oscillator, down);
+        let fit = self.fit(page, oscillator, down);
         let curves: Vec<save::Curve> =
             curves(&fit, oscillator, false).into_iter().map(|(curve, _)| curve).collect();
         if format == Format::Csv {
@@ -159,10 +159,10 @@ impl Oscillation {
             let rows: Vec<(f64, Vec<f64>)> = (0..fit.moments.len())
                 .map(|row| (fit.moments[row].time, curves.iter().map(|curve| curve.points[row].1).collect()))
                 .collect();
-            return Ok(Some(save::rows(report, "oscillation", &header, &rows)));
+            return Ok(Some(save::rows(page, "oscillation", &header, &rows)));
         }
         let upwards = "from where it would hang (m)".to_owned();
-        save::chart(report, "oscillation", "time (s)".to_owned(), upwards, curves, format).map(Some)
+        save::chart(page, "oscillation", "time (s)".to_owned(), upwards, curves, format).map(Some)
     }
 
     /// Whatever changes parameters or places starts the comparison anew.
@@ -182,7 +182,7 @@ impl Oscillation {
         self.seen = Some((report.params.clone(), newest_mark));
     }
 
-    fn fit(&self, report: &Report, samples: &[&Sample], oscillator: &Oscillator, down: DVec3) -> Fit {
+    fn fit(&self, Page { report, samples }: Page<'_>, oscillator: &Oscillator, down: DVec3) -> Fit {
         let anchor = report.now.positions[oscillator.anchor].as_dvec3();
         let recorded: Vec<Moment> = samples
             .iter()
@@ -280,7 +280,7 @@ fn explanation(fit: &Fit, oscillator: &Oscillator) -> String {
             "The motion is {:.0} % of the length {} m at rest: too large for the formulas, which hold straight up and down, \
              or up to {:.0} %.",
             100.0 * size,
-            reading(oscillator.length()),
+            steady(oscillator.length()),
             100.0 * SMALL
         ),
     }
@@ -294,11 +294,11 @@ fn curves(fit: &Fit, oscillator: &Oscillator, dark: bool) -> Vec<(save::Curve, e
     let mut push = |name: &str, look: usize, exact: bool, of: &dyn Fn(&Moment) -> f64| {
         // Formulas are dashed in ink, on top of the measured line.
         let ink = [0x22_2b_36, 0xf2_f2_f2];
-        let rgb = if exact { ink } else { looks[look] };
+        let colours = if exact { ink } else { looks[look] };
         let style = if exact { LineStyle::Dashed { length: 7.0 } } else { LineStyle::Solid };
         let points = fit.moments.iter().map(|moment| (moment.time, of(moment))).collect();
-        let curve = save::Curve { name: name.to_owned(), colour: rgb[0], style, points };
-        curves.push((curve, colour(rgb[usize::from(dark)])));
+        let curve = save::Curve { name: name.to_owned(), colour: colours[0], style, points };
+        curves.push((curve, rgb(colours[usize::from(dark)])));
     };
     let Some(first) = fit.moments.first() else { return curves };
     let side = fit.side;
@@ -348,7 +348,7 @@ fn period(ui: &mut Ui, crossings: &[f64], motion: Damped, is_swing: bool, wide: 
     for (number, period) in measured.iter().enumerate().skip(measured.len().saturating_sub(latest)) {
         let off =
             formula.map_or(String::new(), |formula| format!(" {:+.2} %", 100.0 * (period / formula - 1.0)));
-        ui.monospace(format!("{:>2}.      {period:.4} s{}", number + 1, off.replace('-', "−")));
+        ui.monospace(format!("{:>2}.      {period:.4} s{}", number + 1, with_minus(off)));
     }
     if measured.is_empty() {
         ui.weak("measured after two crossings");

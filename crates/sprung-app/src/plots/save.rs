@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use egui_plot::LineStyle;
 use sprung::{Code, Error, Result};
-use sprung_driver::{Probe, Report, Sample};
+use sprung_driver::{Probe, Sample};
 use sprung_render::plot::{self, Chart};
 
 use super::entries::ENTRIES;
 use super::quantity;
-use super::value;
+use super::{Page, value};
 use crate::media::{SaveRequest, file_stem};
 
 /// A format that plots are saved in.
@@ -69,37 +69,37 @@ pub struct Curve {
 ///
 /// # Errors
 /// If the picture cannot be encoded, as with all pictures here.
-pub fn ledger(report: &Report, samples: &[&Sample], format: Format) -> Result<SaveRequest> {
+pub fn ledger(page: Page<'_>, format: Format) -> Result<SaveRequest> {
     if format == Format::Csv {
         let header = ENTRIES.iter().map(|entry| format!("{} (J)", entry.name)).collect::<Vec<_>>();
         let row = |sample: &Sample| ENTRIES.iter().map(|entry| Some((entry.value)(&sample.energy))).collect();
-        return Ok(csv(report, "energy", table(&header, samples, row)));
+        return Ok(csv(page, "energy", table(&header, page.samples, row)));
     }
-    let energies: Vec<_> = samples.iter().map(|sample| (sample.time, sample.energy)).collect();
-    picture(report, "energy", &plot::energy_chart(&title(report, "energy"), &energies), format)
+    let energies: Vec<_> = page.samples.iter().map(|sample| (sample.time, sample.energy)).collect();
+    picture(page, "energy", &plot::energy_chart(&title(page, "energy"), &energies), format)
 }
 
 /// The recorded values of some probes as a table; cells are empty where nothing was recorded.
-pub fn values(report: &Report, samples: &[&Sample], probes: &[Probe]) -> SaveRequest {
+pub fn values(page: Page<'_>, probes: &[Probe]) -> SaveRequest {
     let header: Vec<String> = probes.iter().map(|probe| quantity::axis(*probe)).collect();
     let row = |sample: &Sample| probes.iter().map(|probe| value(sample, *probe)).collect();
-    csv(report, "traces", table(&header, samples, row))
+    csv(page, "traces", table(&header, page.samples, row))
 }
 
 /// A table of anything against time.
-pub fn rows(report: &Report, what: &str, header: &[String], rows: &[(f64, Vec<f64>)]) -> SaveRequest {
+pub fn rows(page: Page<'_>, what: &str, header: &[String], rows: &[(f64, Vec<f64>)]) -> SaveRequest {
     let mut text = format!("time (s),{}\n", header.join(","));
     for (time, values) in rows {
         let cells: Vec<String> = values.iter().map(f64::to_string).collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{time},{}", cells.join(","));
     }
-    csv(report, what, text)
+    csv(page, what, text)
 }
 
 /// A table that is ready.
-pub fn csv(report: &Report, what: &str, text: String) -> SaveRequest {
-    request(report, what, Format::Csv, text.into_bytes())
+pub fn csv(page: Page<'_>, what: &str, text: String) -> SaveRequest {
+    request(page, what, Format::Csv, text.into_bytes())
 }
 
 /// Some curves as a picture.
@@ -107,7 +107,7 @@ pub fn csv(report: &Report, what: &str, text: String) -> SaveRequest {
 /// # Errors
 /// If it cannot be encoded.
 pub fn chart(
-    report: &Report,
+    page: Page<'_>,
     what: &str,
     across: String,
     upwards: String,
@@ -126,8 +126,8 @@ pub fn chart(
         points,
     });
     let chart =
-        Chart { title: title(report, what), across, upwards, unit: "", curves: curves.collect(), note: None };
-    picture(report, what, &chart, format)
+        Chart { title: title(page, what), across, upwards, unit: "", curves: curves.collect(), note: None };
+    picture(page, what, &chart, format)
 }
 
 /// One row for each sample: step, time, and the cells. Numbers read back to the same float64.
@@ -150,27 +150,27 @@ fn table(header: &[String], samples: &[&Sample], row: impl Fn(&Sample) -> Vec<Op
     text
 }
 
-fn picture(report: &Report, what: &str, chart: &Chart, format: Format) -> Result<SaveRequest> {
+fn picture(page: Page<'_>, what: &str, chart: &Chart, format: Format) -> Result<SaveRequest> {
     let bytes = match format {
         Format::Svg => chart.svg(plot::SIZE).into_bytes(),
         _ => chart
             .png(plot::SIZE)
             .map_err(|error| Error::new(Code::Unwritable, format!("the plot cannot be encoded: {error}")))?,
     };
-    Ok(request(report, what, format, bytes))
+    Ok(request(page, what, format, bytes))
 }
 
-fn title(report: &Report, what: &str) -> String {
-    format!("{}: {what}", report.opened.scene.title)
+fn title(page: Page<'_>, what: &str) -> String {
+    format!("{}: {what}", page.report.opened.scene.title)
 }
 
-fn request(report: &Report, what: &str, format: Format, bytes: Vec<u8>) -> SaveRequest {
+fn request(page: Page<'_>, what: &str, format: Format, bytes: Vec<u8>) -> SaveRequest {
     let ending = match format {
         Format::Csv => "csv",
         Format::Svg => "svg",
         Format::Png => "png",
     };
-    SaveRequest { name: format!("{}-{what}.{ending}", file_stem(&report.opened.name)), bytes }
+    SaveRequest { name: format!("{}-{what}.{ending}", file_stem(&page.report.opened.name)), bytes }
 }
 
 #[cfg(test)]

@@ -5,13 +5,15 @@ use egui_plot::{Bar, BarChart, Line, LineStyle, PlotPoints};
 use sprung::Result;
 use sprung_driver::{Command, Report};
 
-use super::canvas::{Canvas, Sheet, reading, swatch};
-use super::entries::colour;
+use super::Page;
+use super::canvas::{Canvas, Sheet, swatch};
 use super::exact;
 use super::save::{self, Format};
 use super::shape::Chain;
 use crate::media::SaveRequest;
 use crate::state::AppState;
+use crate::text::steady;
+use crate::theme::rgb;
 
 /// Slower than this, m/s, a chain counts as hanging still.
 const STILL: f64 = 1e-3;
@@ -29,7 +31,7 @@ impl Stretch {
         &mut self,
         ui: &mut Ui,
         state: &mut AppState,
-        report: &Report,
+        Page { report, .. }: Page<'_>,
         chain: &Chain,
         canvas: &mut Canvas,
     ) {
@@ -38,7 +40,7 @@ impl Stretch {
         let off = measured.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         ui.horizontal_wrapped(|ui| {
             ui.label(if fastest < STILL {
-                format!("At rest: the largest difference is {} mm.", reading(1000.0 * off))
+                format!("At rest: the largest difference is {} mm.", steady(1000.0 * off))
             } else {
                 "It moves. The formula is that of the chain at rest.".to_owned()
             });
@@ -48,7 +50,7 @@ impl Stretch {
             }
         });
         let dark = ui.visuals().dark_mode;
-        let (blue, orange) = (colour(if dark { 0x4a_a8_e0 } else { 0x00_72_b2 }), colour(0xe6_7a_00));
+        let (blue, orange) = (rgb(if dark { 0x4a_a8_e0 } else { 0x00_72_b2 }), rgb(0xe6_7a_00));
         let read = self.cursor.filter(|index| *index < exact.len());
         let spring_under_cursor = read.map(|index| (chain.springs[index], measured[index], exact[index]));
         super::beside_legend(
@@ -94,8 +96,8 @@ impl Stretch {
                     ui.label("ℓ − L = g · (Σ m below)/k_s");
                     if let Some((spring, measured, exact)) = spring_under_cursor {
                         ui.label(format!("spring {spring}:"));
-                        ui.monospace(format!("measured {} m", reading(measured)));
-                        ui.monospace(format!("formula  {} m", reading(exact)));
+                        ui.monospace(format!("measured {} m", steady(measured)));
+                        ui.monospace(format!("formula  {} m", steady(exact)));
                     }
                 }
             },
@@ -106,14 +108,14 @@ impl Stretch {
     ///
     /// # Errors
     /// If the picture cannot be encoded.
-    pub fn save(report: &Report, chain: &Chain, format: Format) -> Result<SaveRequest> {
-        let (measured, exact) = (measured(report, chain), formula(chain));
+    pub fn save(page: Page<'_>, chain: &Chain, format: Format) -> Result<SaveRequest> {
+        let (measured, exact) = (measured(page.report, chain), formula(chain));
         if format == Format::Csv {
             let mut text = "spring,measured (m),formula (m)\n".to_owned();
             for ((spring, measured), exact) in chain.springs.iter().zip(&measured).zip(&exact) {
                 text.push_str(&format!("{spring},{measured},{exact}\n"));
             }
-            return Ok(save::csv(report, "stretch", text));
+            return Ok(save::csv(page, "stretch", text));
         }
         let curve = |name: &str, colour, style, values: &[f64]| save::Curve {
             name: name.to_owned(),
@@ -126,7 +128,7 @@ impl Stretch {
             curve("formula", 0xe6_7a_00, LineStyle::Dashed { length: 8.0 }, &exact),
         ];
         let across = "spring, from the fixed end on".to_owned();
-        save::chart(report, "stretch", across, "stretch (m)".to_owned(), curves, format)
+        save::chart(page, "stretch", across, "stretch (m)".to_owned(), curves, format)
     }
 }
 

@@ -5,11 +5,13 @@ use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 use sprung::Result;
 use sprung_driver::{Probe, Report, Sample};
 
-use super::canvas::{self, Canvas, Sheet, reading, swatch};
+use super::canvas::{self, Canvas, Sheet, swatch};
 use super::quantity::{self, Quantity};
-use super::{entries, ledger, save, value};
+use super::{Page, ledger, save, value};
 use crate::media::SaveRequest;
 use crate::state::{AppState, Pick};
+use crate::text::steady;
+use crate::theme::rgb;
 
 /// Traces shown at the most: more cannot be told apart.
 const MOST: usize = 8;
@@ -64,14 +66,8 @@ impl Traces {
     }
 
     /// The chooser, the plot and its legend.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        state: &mut AppState,
-        report: &Report,
-        samples: &[&Sample],
-        canvas: &mut Canvas,
-    ) {
+    pub fn show(&mut self, ui: &mut Ui, state: &mut AppState, page: Page<'_>, canvas: &mut Canvas) {
+        let Page { report, samples } = page;
         self.follow(state);
         ui.horizontal_wrapped(|ui| self.chooser(ui, report, canvas));
         if self.kept.is_empty() {
@@ -131,7 +127,7 @@ impl Traces {
     ///
     /// # Errors
     /// If the picture cannot be encoded.
-    pub fn save(&self, report: &Report, samples: &[&Sample], format: save::Format) -> Result<SaveRequest> {
+    pub fn save(&self, page: Page<'_>, format: save::Format) -> Result<SaveRequest> {
         let curves: Vec<save::Curve> = self
             .kept
             .iter()
@@ -139,13 +135,13 @@ impl Traces {
                 name: quantity::name(probe),
                 colour: LOOKS[look].0[0],
                 style: LOOKS[look].1,
-                points: curve(samples, probe, self.across).iter().map(|[x, y]| (*x, *y)).collect(),
+                points: curve(page.samples, probe, self.across).iter().map(|[x, y]| (*x, *y)).collect(),
             })
             .collect();
         match format {
-            save::Format::Csv => Ok(save::values(report, samples, &self.probes())),
+            save::Format::Csv => Ok(save::values(page, &self.probes())),
             _ => save::chart(
-                report,
+                page,
                 "traces",
                 self.across.map_or("time (s)".to_owned(), quantity::axis),
                 self.upwards(),
@@ -270,7 +266,7 @@ impl Traces {
 
 fn look_of(look: usize, dark: bool) -> (Color32, LineStyle) {
     let (colours, style) = LOOKS[look % MOST];
-    (entries::colour(colours[usize::from(dark)]), style)
+    (rgb(colours[usize::from(dark)]), style)
 }
 
 /// A trace as points: against time with all its peaks, against another quantity in the order of the run.
@@ -317,7 +313,7 @@ fn legend(ui: &mut Ui, wide: bool, kept: &[(Probe, usize)], read: Option<&Sample
         if let Some(value) = read.and_then(|sample| value(sample, probe)).filter(|_| wide) {
             ui.horizontal(|ui| {
                 ui.add_space(32.0);
-                ui.monospace(format!("{} {}", reading(value), quantity::unit(probe)));
+                ui.monospace(format!("{} {}", steady(value), quantity::unit(probe)));
             });
         }
     }

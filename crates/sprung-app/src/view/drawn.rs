@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use sprung::Model;
-use sprung_render::appearance::{Appearance, Springs};
-use sprung_render::gpu::shown;
+use sprung_render::appearance::Appearance;
+use sprung_render::gpu::{joints_shown, shown};
 
 /// What of a body is drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Drawn {
                 surface: surfaces.any(|surface| shown.surface(surface.kind)),
             }
         });
-        let joints = model.joints().iter().filter(|_| appearance.springs != Springs::Hidden);
+        let joints = model.joints().iter().filter(|_| joints_shown(appearance));
         Self { bodies: bodies.collect(), joints: joints.map(|joint| joint.springs.clone()).collect() }
     }
 

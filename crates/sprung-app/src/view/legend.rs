@@ -4,8 +4,8 @@ use egui::{Align2, Color32, FontId, Rect, Response, Sense, Ui, pos2, vec2};
 use sprung_render::appearance::{Appearance, ColourBy};
 use sprung_render::colour::to_srgb;
 
-use super::reading::steady;
 use crate::state::AppState;
+use crate::text::{steady, three_digits};
 
 /// Size of the bar with the colours.
 const BAR: egui::Vec2 = egui::vec2(200.0, 12.0);
@@ -152,8 +152,7 @@ fn title(colour_by: ColourBy) -> &'static str {
 /// A value at the end of the scale.
 fn short(value: f32, colour_by: ColourBy) -> String {
     let (value, unit) = if colour_by == ColourBy::Strain { (100.0 * value, " %") } else { (value, "") };
-    let text = sprung::significant(f64::from(format!("{value:.2e}").parse().unwrap_or(value)));
-    format!("{}{unit}", text.replace('-', "\u{2212}"))
+    format!("{}{unit}", three_digits(value.into()))
 }
 
 #[cfg(test)]

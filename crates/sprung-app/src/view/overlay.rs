@@ -7,9 +7,11 @@ use sprung_render::palette::{DARK, LIGHT, Palette};
 use sprung_render::turntable::Turntable;
 
 use super::drawn::Drawn;
-use super::reading::{Reading, steady};
+use super::reading::Reading;
 use crate::action::Action;
 use crate::state::{AppState, Tool};
+use crate::text::{rounded, steady, thousands, with_minus};
+use crate::theme;
 
 /// Distance of what is written from the view's edges.
 const EDGE: f32 = 14.0;
@@ -71,7 +73,7 @@ pub fn status(ui: &mut Ui, view: Rect, state: &AppState, recording: Option<&str>
     let rect = Rect::from_min_size(view.min + vec2(EDGE, EDGE), vec2(360.0, 60.0));
     at(ui, rect, Align2::LEFT_TOP, |ui| {
         ui.horizontal(|ui| {
-            let time = format!("t = {:.3} s", report.now.time).replace('-', "\u{2212}");
+            let time = with_minus(format!("t = {:.3} s", report.now.time));
             let text = RichText::new(time).monospace().size(14.0);
             plate(ui).show(ui, |ui| ui.add(egui::Label::new(text).selectable(false)));
             if !report.playing {
@@ -148,7 +150,7 @@ pub fn axes(ui: &Ui, view: Rect, camera: &Turntable) {
         let end = vec2(axis.dot(right), -axis.dot(up)) * 24.0;
         let colour = Color32::from_rgb(r, g, b);
         painter.line_segment([middle, middle + end], Stroke::new(2.0, colour));
-        let place = middle + end * 1.0 + end.normalized() * 8.0;
+        let place = middle + end + end.normalized() * 8.0;
         painter.text(place, Align2::CENTER_CENTER, name, FontId::proportional(12.0), colour);
     }
 
@@ -195,13 +197,12 @@ fn length_text(length: f32) -> String {
         l if l >= 1e-3 => (l * 1e3, "mm"),
         l => (l * 1e6, "\u{b5}m"),
     };
-    format!("{} {unit}", sprung::significant(f64::from(format!("{value:.1e}").parse().unwrap_or(value))))
+    format!("{} {unit}", sprung::significant(rounded(value.into(), 2)))
 }
 
 /// A colour of the renderer's palette, in the theme of the window.
 fn ink(ui: &Ui, colour: impl Fn(&Palette) -> u32) -> Color32 {
-    let hex = colour(if ui.visuals().dark_mode { &DARK } else { &LIGHT });
-    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+    theme::rgb(colour(if ui.visuals().dark_mode { &DARK } else { &LIGHT }))
 }
 
 /// The colour of forces: that of their arrows.
@@ -423,19 +424,6 @@ pub fn times(ui: &mut Ui, view: Rect, state: &AppState, timings: Option<sprung_r
     });
 }
 
-/// A count with its thousands set apart.
-pub fn thousands(count: usize) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{a0}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -462,7 +450,5 @@ mod tests {
     fn scales_are_round() {
         let texts = [0.07, 0.5, 3.0, 99.0, 4200.0].map(|length| length_text(round_length(length)));
         assert_eq!(texts, ["5 cm", "50 cm", "2 m", "50 m", "2 km"]);
-        assert_eq!(thousands(1_570_818), "1\u{a0}570\u{a0}818");
-        assert_eq!(thousands(12), "12");
     }
 }

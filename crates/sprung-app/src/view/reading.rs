@@ -4,6 +4,7 @@ use sprung::{PointReading, SpringReading};
 use sprung_driver::Report;
 
 use crate::state::Pick;
+use crate::text::steady;
 
 /// A title and lines of a quantity, its value and its unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,21 +70,6 @@ fn named(kind: &str, index: usize, owner: &str) -> String {
     if owner.is_empty() { format!("{kind} {index}") } else { format!("{kind} {index} of {owner}") }
 }
 
-/// A number whose width hardly changes while its value does.
-pub fn steady(value: f64) -> String {
-    let size = value.abs();
-    let text = if !value.is_finite() {
-        value.to_string()
-    } else if size != 0.0 && !(5e-4..99_999.5).contains(&size) {
-        format!("{value:.2e}")
-    } else if size < 100.0 {
-        format!("{value:.3}")
-    } else {
-        format!("{value:.1}")
-    };
-    text.replace('-', "\u{2212}")
-}
-
 fn with_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", steady(value))
 }
@@ -91,15 +77,4 @@ fn with_unit(value: f64, unit: &str) -> String {
 fn vector(values: [f64; 3], unit: &str) -> String {
     let [x, y, z] = values.map(steady);
     format!("({x}, {y}, {z}) {unit}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_keep_their_width() {
-        let texts = [0.0, 1.23456, -12.3, 123.45, 1e-5, 2.5e7].map(steady);
-        assert_eq!(texts, ["0.000", "1.235", "\u{2212}12.300", "123.5", "1.00e\u{2212}5", "2.50e7"]);
-    }
 }

@@ -7,9 +7,9 @@ use sprung_driver::Report;
 use sprung_render::camera::Camera;
 
 use super::overlay::{force_ink, plate, velocity_ink};
-use super::reading::steady;
 use crate::explain::{Stage, reading};
 use crate::state::{AppState, Pick};
+use crate::text::steady;
 
 /// Length of the longest arrow, points of the window.
 const LENGTH: f64 = 80.0;

@@ -1,8 +1,6 @@
 //! Whether two pictures show the same, though another driver drew them.
 //!
-//! Drivers may place the samples of a pixel differently and round differently, which moves edges by a fraction of a pixel
-//! and colours by a step or two. So not pixels are compared but means over squares: a moved edge shifts a mean by some
-//! steps, and a letter that is missing shifts it by dozens. Two things make pictures differ:
+//! Means over squares are compared, as those of the renderer's pictures are. Two things make pictures differ:
 //!
 //! - too many squares that differ, wherever they lie: the scene has moved, turned, or changed its colour;
 //! - several that differ side by side: a word, a sign or a curve is missing. Where edges have moved, squares that
@@ -12,16 +10,11 @@ use std::path::{Path, PathBuf};
 
 use sprung_render::Image;
 
-use super::png_file;
+use super::{png_file, squares};
 
 /// Side of a square in a stored picture, which is half as wide and high as the window: 6 of the window's pixels, about
 /// half the height of a line of text.
 const SQUARE: u32 = 3;
-/// The most that a mean may differ, in steps of 255: an edge between black and white, moved by a quarter of a pixel of
-/// the window along a whole square, shifts it by 255/4/6 = 11.
-const TOLERANCE: f64 = 11.0;
-/// The share of all squares that may differ more: where several thin lines cross a square, their shifts add up.
-const STRAY_SHARE: f64 = 0.004;
 /// A neighbourhood, in squares: as wide as a short word and a little higher.
 const NEIGHBOURHOOD: [usize; 2] = [6, 3];
 /// How many squares of one neighbourhood may differ.
@@ -33,10 +26,10 @@ pub fn compare(stored: &Path, found: &Image) -> Option<String> {
     let drawn = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(stored.file_name().expect("it has a name"));
     png_file::write(&drawn, found);
     let found = png_file::reduced(found);
-    if updates() {
+    if squares::updates() {
         png_file::write(stored, &found);
     }
-    let Some(expected) = png_file::read(stored) else {
+    let Some(expected) = squares::read(stored) else {
         return Some(format!(
             "there is no stored picture {} of {}; {fix}",
             stored.display(),
@@ -47,18 +40,12 @@ pub fn compare(stored: &Path, found: &Image) -> Option<String> {
     Some(format!("{} differs from {}: {what}; {fix}", drawn.display(), stored.display()))
 }
 
-/// Whether stored pictures are to be drawn anew.
-pub fn updates() -> bool {
-    std::env::var_os("SPRUNG_UPDATE_PICTURES").is_some()
-}
-
 /// In what two pictures differ, if they do.
 fn difference(a: &Image, b: &Image) -> Option<String> {
     if (a.width, a.height) != (b.width, b.height) {
         return Some(format!("it has {} × {} pixels, not {} × {}", a.width, a.height, b.width, b.height));
     }
-    let far = |(a, b): (&[f64; 3], &[f64; 3])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > TOLERANCE);
-    let strays: Vec<bool> = means(a).iter().zip(&means(b)).map(far).collect();
+    let strays = squares::strays(a, b, SQUARE);
     let columns = a.width.div_ceil(SQUARE) as usize;
     if let Some((count, [x, y])) = thickest(&strays, columns).filter(|(count, _)| *count > MOST_TOGETHER) {
         return Some(format!(
@@ -66,25 +53,7 @@ fn difference(a: &Image, b: &Image) -> Option<String> {
             NEIGHBOURHOOD[0] * NEIGHBOURHOOD[1]
         ));
     }
-    let share = strays.iter().filter(|stray| **stray).count() as f64 / strays.len() as f64;
-    (share > STRAY_SHARE).then(|| format!("{:.1} % of its squares", 100.0 * share))
-}
-
-/// The mean colour of each square, row by row.
-fn means(image: &Image) -> Vec<[f64; 3]> {
-    let mut means = Vec::new();
-    for top in (0..image.height).step_by(SQUARE as usize) {
-        for left in (0..image.width).step_by(SQUARE as usize) {
-            let inside = (0..SQUARE).flat_map(|y| (0..SQUARE).map(move |x| (left + x, top + y)));
-            let (mut sum, mut count) = ([0.0; 3], 0.0);
-            for pixel in inside.filter_map(|(x, y)| image.pixel(x, y)) {
-                sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += f64::from(value));
-                count += 1.0;
-            }
-            means.push(sum.map(|sum| sum / count));
-        }
-    }
-    means
+    squares::too_many(&strays)
 }
 
 /// The largest number of strays in one neighbourhood, and the pixel in its middle.

@@ -2,6 +2,8 @@
 
 pub mod compare;
 pub mod png_file;
+#[path = "../../../sprung-render/tests/squares/mod.rs"]
+pub mod squares;
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -2,19 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufReader, BufWriter};
+use std::io::BufWriter;
 use std::path::Path;
 
 use color_quant::NeuQuant;
 use sprung_render::Image;
-
-/// Reads a picture; `None` if there is none.
-pub fn read(path: &Path) -> Option<Image> {
-    let mut reader = png::Decoder::new(BufReader::new(File::open(path).ok()?)).read_info().ok()?;
-    let mut rgb = vec![0; reader.output_buffer_size()?];
-    let frame = reader.next_frame(&mut rgb).ok()?;
-    Some(Image { width: frame.width, height: frame.height, rgb })
-}
 
 /// Stores a picture exactly.
 pub fn write(path: &Path, image: &Image) {

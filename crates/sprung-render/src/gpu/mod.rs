@@ -32,7 +32,7 @@ mod topology;
 use glam::Vec3;
 
 pub use device::{Headless, headless};
-pub use plan::{Shown, shown};
+pub use plan::{Shown, joints_shown, shown};
 pub use quality::Quality;
 pub use stage::{Stage, Timings};
 

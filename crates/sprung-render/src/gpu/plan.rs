@@ -183,6 +183,12 @@ pub fn shown(model: &Model, appearance: &Appearance, body: usize) -> Shown {
     Shown { points, springs, cloths: appearance.surfaces != Surfaces::Hidden, skins }
 }
 
+/// Whether springs of joints are drawn: they lie between bodies, where no surface could stand for them. The window asks the
+/// same function.
+pub fn joints_shown(appearance: &Appearance) -> bool {
+    appearance.springs != Springs::Hidden
+}
+
 fn chosen_points(model: &Model, params: &Params, appearance: &Appearance, shown: &[Shown]) -> Vec<[u32; 2]> {
     let mut points = Vec::new();
     for ((body, shown), index) in model.bodies().iter().zip(shown).zip(0u32..) {
@@ -201,7 +207,7 @@ fn chosen_points(model: &Model, params: &Params, appearance: &Appearance, shown:
 
 fn chosen_springs(model: &Model, appearance: &Appearance, shown: &[Shown]) -> Vec<[u32; 3]> {
     let bodies = model.bodies().iter().zip(shown).filter(|(_, shown)| shown.springs);
-    let joints = model.joints().iter().filter(|_| appearance.springs != Springs::Hidden);
+    let joints = model.joints().iter().filter(|_| joints_shown(appearance));
     let ranges =
         bodies.map(|(body, _)| body.springs.clone()).chain(joints.map(|joint| joint.springs.clone()));
     let entry = |spring: usize| {
