@@ -55,7 +55,7 @@ pub enum Action {
     Record,
     /// Closes the window.
     Quit,
-    /// Opens a built-in scene of the four, by its number from zero.
+    /// Opens one of the four scenes of the report, by its number from zero.
     Scene(usize),
 }
 

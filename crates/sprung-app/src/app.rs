@@ -1,5 +1,6 @@
 //! The window: its parts and where they lie.
 
+use sprung::scene::Kind;
 use sprung_driver::{Command, Handle, Report, Trouble};
 use sprung_render::appearance::Theme;
 use sprung_render::camera::Bounds;
@@ -149,7 +150,7 @@ impl App {
             Action::Picture | Action::Record => self.view.save(action, state),
             Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Scene(number) => {
-                let name = panel::scenes::entries().get(number).map(|entry| entry.name);
+                let name = panel::scenes::of_kind(Kind::Report).nth(number).map(|entry| entry.name);
                 name.into_iter().for_each(|name| state.open_builtin(name));
             }
         }

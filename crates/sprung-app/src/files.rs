@@ -1,4 +1,4 @@
-//! The one door to files: dialogs, reading, writing. In a browser it becomes a picker and downloads.
+//! The one door to files: dialogs, reading, writing.
 
 use std::future::Future;
 use std::io::Write;

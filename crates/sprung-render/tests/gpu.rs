@@ -56,6 +56,9 @@ fn square() -> Motion {
     still(&points, &[[0, 1], [2, 3]], Vec::new())
 }
 
+/// Radius of the spheres of a few points that are 2 m apart, m.
+const RADIUS: f32 = 0.18;
+
 /// A stage with one background colour and no shadows, so that pixels can be told apart.
 fn set(what: &str, motion: Motion) -> Option<Set> {
     let mut set = Set::new(device(what)?, motion, SIZE);
@@ -114,13 +117,12 @@ fn points_are_where_the_camera_sees_them() {
     let positions = set.positions();
     for &place in &positions {
         assert!(apart(set.colour_at(&image, place), BACKGROUND) > DIFFERENT, "{place}");
-        // The sphere has the radius that it says it has: inside it is, outside it is not.
-        let radius = set.stage.point_radius();
+        // Inside its radius the sphere is, outside it is not.
         let [right, up, _] = set.camera.axes;
         for direction in [right, -right, up, -up] {
-            let inside = set.colour_at(&image, place + 0.75 * radius * direction);
+            let inside = set.colour_at(&image, place + 0.75 * RADIUS * direction);
             assert!(apart(inside, BACKGROUND) > DIFFERENT, "{place}");
-            assert_eq!(set.colour_at(&image, place + 1.4 * radius * direction), BACKGROUND);
+            assert_eq!(set.colour_at(&image, place + 1.4 * RADIUS * direction), BACKGROUND);
         }
     }
     change(&mut set, &Change::Pin(1..2, true));
@@ -291,7 +293,7 @@ fn what_has_sunk_into_a_plane_shines_through() {
     );
     let through = set.colour_at(&image, below);
     assert!(apart(through, set.colour_at(&free, below)) > DIFFERENT, "it is tinted");
-    let beside = set.colour_at(&image, below + 3.0 * set.stage.point_radius() * set.camera.axes[0]);
+    let beside = set.colour_at(&image, below + 3.0 * RADIUS * set.camera.axes[0]);
     assert!(apart(through, beside) > DIFFERENT, "and still seen");
     set.look.ground = false;
     assert_eq!(set.draw(), free);

@@ -14,7 +14,7 @@ const SLACK: (f32, f64) = (4.0, 0.15);
 pub struct Press {
     /// The point.
     pub point: usize,
-    /// Where and when it was pressed, from the view's corner and s.
+    /// Where it was pressed, from the view's corner, in the window's points.
     pub cursor: Vec2,
     /// When, s.
     pub since: f64,

@@ -204,16 +204,6 @@ impl Stage {
         self.timings
     }
 
-    /// Radius of the spheres of free points, m; those far away are drawn larger, so that they can be seen.
-    pub fn point_radius(&self) -> f32 {
-        self.sizes(&self.first).ball
-    }
-
-    /// Distance of the grid's lines on planes, m.
-    pub fn grid(&self) -> f32 {
-        self.sizes(&self.first).grid
-    }
-
     /// How large things are drawn when they fill the box `now`.
     fn sizes(&self, now: &Bounds) -> Sizes {
         let points = self.model.as_ref().map_or(0, |model| model.point_count());
