@@ -46,7 +46,7 @@ pub struct Driver {
     energy_at: f64,
     compares: bool,
     wants_forces: bool,
-    /// Real time that has passed, s.
+    /// Real time that has passed, but for rests, s.
     pub(crate) clock: f64,
     steps_taken: u64,
     /// The last report, until something has happened.
@@ -137,6 +137,12 @@ impl Driver {
     /// Whether nothing will happen until the next command.
     pub fn is_idle(&self) -> bool {
         !self.playing.on && self.job.is_none() && (!self.compares || self.ghost_is_here())
+    }
+
+    /// The scene that plays, by its serial number.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn plays(&self) -> Option<u64> {
+        self.playing.on.then_some(self.opened.serial)
     }
 
     /// Whether, while nothing else is to do, the true limit of a large model could be found.

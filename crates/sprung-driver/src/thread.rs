@@ -46,15 +46,10 @@ struct Shared {
 }
 
 impl Thread {
-    pub fn start(mut driver: Driver, wake: Box<dyn Fn() + Send>) -> Result<Self> {
+    pub fn start(driver: Driver, wake: Box<dyn Fn() + Send>) -> Result<Self> {
         let (sender, receiver) = channel();
-        let newest = Mutex::new(driver.report());
-        let shared = Arc::new(Shared { newest, quits: AtomicBool::new(false), wake: Mutex::new(wake) });
-        let worker = Worker {
-            driver,
-            inbox: Inbox { receiver, heard: VecDeque::new(), is_open: true },
-            shared: shared.clone(),
-        };
+        let worker = Worker::new(driver, receiver, wake);
+        let shared = worker.shared.clone();
         let theirs = shared.clone();
         let body = move || {
             // Whatever goes wrong in there, the front end hears of it and goes on.
@@ -130,28 +125,43 @@ struct Worker {
     driver: Driver,
     inbox: Inbox,
     shared: Arc<Shared>,
+    /// When the last turn began.
+    then: Instant,
 }
 
 impl Worker {
+    fn new(mut driver: Driver, receiver: Receiver<Command>, wake: Box<dyn Fn() + Send>) -> Self {
+        let newest = Mutex::new(driver.report());
+        let shared = Shared { newest, quits: AtomicBool::new(false), wake: Mutex::new(wake) };
+        let inbox = Inbox { receiver, heard: VecDeque::new(), is_open: true };
+        Self { driver, inbox, shared: Arc::new(shared), then: Instant::now() }
+    }
+
     /// Until the front end is gone.
     fn work(mut self) {
-        let mut then = Instant::now();
         while self.inbox.is_open || !self.inbox.heard.is_empty() {
             self.wait();
             self.inbox.listen();
             if self.shared.quits.load(Ordering::Relaxed) {
                 return;
             }
-            self.obey();
-            let now = Instant::now();
-            let passed = now.duration_since(then).as_secs_f64();
-            then = now;
-            let mut turn =
-                Turn { until: now + BUDGET, told: now, inbox: &mut self.inbox, shared: &self.shared };
-            self.driver.advance_under(passed, &mut turn);
-            self.driver.measured(now.elapsed().as_secs_f64());
-            self.publish();
+            self.turn();
         }
+    }
+
+    /// Does what was asked, and what is due.
+    fn turn(&mut self) {
+        let played = self.driver.plays();
+        self.obey();
+        let now = Instant::now();
+        // What went by before something began to play is not owed to it, such as the rest while nothing did.
+        let passed =
+            if self.driver.plays() == played { now.duration_since(self.then) } else { Duration::ZERO };
+        self.then = now;
+        let mut turn = Turn { until: now + BUDGET, told: now, inbox: &mut self.inbox, shared: &self.shared };
+        self.driver.advance_under(passed.as_secs_f64(), &mut turn);
+        self.driver.measured(now.elapsed().as_secs_f64());
+        self.publish();
     }
 
     /// Sleeps until there is something to do.
@@ -263,5 +273,55 @@ impl Supervisor for Turn<'_> {
             self.shared.publish_busy(what);
         }
         self.inbox.is_open && self.inbox.heard.iter().all(leaves_alone)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sprung::scene::Scene;
+
+    use super::*;
+    use crate::command::Source;
+
+    fn source(name: &str) -> Source {
+        Source { name: name.to_owned(), scene: Scene::builtin(name).expect("a built-in scene") }
+    }
+
+    /// A worker that is given its turns by hand, and whoever asks it for something.
+    fn worker(name: &str) -> (Worker, Sender<Command>) {
+        let (sender, receiver) = channel();
+        (Worker::new(Driver::new(source(name)).expect("it opens"), receiver, Box::new(|| {})), sender)
+    }
+
+    impl Worker {
+        /// A turn so long after the last one, with these commands.
+        fn turn_after(&mut self, rest: Duration, commands: impl IntoIterator<Item = Command>) -> Arc<Report> {
+            self.inbox.heard.extend(commands);
+            self.then = Instant::now().checked_sub(rest).expect("the clock has run for that long");
+            self.turn();
+            self.driver.report()
+        }
+    }
+
+    const REST: Duration = Duration::from_secs(2);
+
+    #[test]
+    fn the_time_of_a_pause_is_not_made_up_for() {
+        let (mut worker, _sender) = worker("chain");
+        for _ in 0..2 {
+            let paused = worker.turn_after(REST, [Command::Play(false)]);
+            let begun = worker.turn_after(REST, [Command::Play(true)]);
+            assert_eq!((begun.now.step, begun.speed), (paused.now.step, 1.0), "playing begins now");
+            // While it plays, time is made up for.
+            assert!(worker.turn_after(REST, []).now.step > begun.now.step);
+        }
+    }
+
+    #[test]
+    fn the_time_of_opening_is_not_owed_to_the_scene_that_was_opened() {
+        let (mut worker, _sender) = worker("chain");
+        worker.turn_after(REST, [Command::Play(true)]);
+        let report = worker.turn_after(REST, [Command::Open(Box::new(source("chain")))]);
+        assert_eq!((report.now.step, report.playing, report.speed), (0, true, 1.0));
     }
 }
