@@ -353,11 +353,16 @@ impl Driver {
         self.playing.switch(false);
         self.job = None;
         self.waiting.clear();
-        self.hand = None;
+        if self.hand.take().is_some() {
+            self.run.let_go();
+        }
         let positions = &self.run.simulation.state().position;
         self.fixes = fixes::find(blow_up, &self.opened.model, self.run.params(), positions);
         self.trouble = Some(Trouble::BlewUp(Box::new(blow_up.clone())));
-        self.run.mark("blew up");
+        // Settling that blows up in the past leaves that as it is.
+        if !self.run.is_in_past() {
+            self.run.mark("blew up");
+        }
         self.jumped();
     }
 }

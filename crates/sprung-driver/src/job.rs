@@ -176,18 +176,18 @@ impl Driver {
     }
 
     fn settle(&mut self, supervisor: &mut dyn Supervisor) -> Result<()> {
-        self.release()?;
-        self.run.part();
         let options = self.options.settle;
         let progress = &mut |so_far: Settled| {
             let force = significant(so_far.residual_force);
             let what = format!("settling: {} steps, {force} N left", so_far.steps);
             if supervisor.may_keep_busy(&what) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        self.run.simulation.settle_with(options, progress)?;
-        self.run.state_changed();
+        self.run.settle(options, progress)?;
         self.run.mark("settled");
         self.jumped();
+        if self.hand.take().is_some() {
+            self.choose_substeps()?;
+        }
         Ok(())
     }
 }

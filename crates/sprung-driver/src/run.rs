@@ -4,9 +4,12 @@
 //! done then; beyond the newest, steps are new. Doing anything new in the past makes a branch there: what lay beyond is
 //! dropped from the run, and kept as a [`Ghost`] to compare with.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use sprung::{Change, Energy, Params, PointReading, Result, Simulation, SpringReading};
+use sprung::{
+    Change, Energy, Params, PointReading, Result, SettleOptions, Settled, Simulation, SpringReading,
+};
 
 use crate::command::Probe;
 use crate::ghost::Ghost;
@@ -108,7 +111,7 @@ impl Run {
     /// # Errors
     /// If the change is not allowed: then nothing has happened.
     pub fn change(&mut self, change: Change) -> Result<()> {
-        // Tried on a copy first: the engine forgets the future before it looks at a change.
+        // Tried on a copy first: what is refused makes no branch.
         self.params().clone().apply(self.simulation.model(), &change)?;
         self.part();
         self.simulation.change(change)?;
@@ -151,14 +154,26 @@ impl Run {
 
     /// Every hand lets go.
     pub fn let_go(&mut self) {
-        let grabbed = self.params().grabs.iter().map(|grab| Change::Release(grab.point));
-        let carried = self.params().carried.keys().map(|&point| Change::Carry(point, None));
-        for change in grabbed.chain(carried).collect::<Vec<_>>() {
-            // Points that are held exist, so that this cannot fail.
-            if self.simulation.change(change).is_err() {
-                debug_assert!(false, "a hand could not let go");
-            }
-        }
+        let_go(&mut self.simulation);
+    }
+
+    /// Brings the scene to rest, with no hand at it; in the past as a branch.
+    ///
+    /// # Errors
+    /// If it does not come to rest, or `progress` broke it off: then nothing has happened.
+    pub fn settle(
+        &mut self,
+        options: SettleOptions,
+        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
+    ) -> Result<()> {
+        // On a clone, as even letting go is something done.
+        let mut settled = self.simulation.clone();
+        let_go(&mut settled);
+        settled.settle_with(options, progress)?;
+        self.part();
+        self.simulation = settled;
+        self.sample_is_stale = true;
+        Ok(())
     }
 
     /// Back to the first state, under the parameters of now.
@@ -252,6 +267,19 @@ impl Run {
         if self.keeps_ghost {
             let here = (self.simulation.state().step, self.simulation.state().time);
             self.ghost = Some(Ghost::new(self.simulation.clone(), self.recorded.clone(), here));
+        }
+    }
+}
+
+/// Every hand lets go.
+fn let_go(simulation: &mut Simulation) {
+    let params = simulation.params();
+    let grabbed = params.grabs.iter().map(|grab| Change::Release(grab.point));
+    let carried = params.carried.keys().map(|&point| Change::Carry(point, None));
+    for change in grabbed.chain(carried).collect::<Vec<_>>() {
+        // Points that are held exist, so that this cannot fail.
+        if simulation.change(change).is_err() {
+            debug_assert!(false, "a hand could not let go");
         }
     }
 }

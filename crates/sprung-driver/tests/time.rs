@@ -4,7 +4,7 @@ mod common;
 
 use common::{at, check, edit, frames, now, open, source};
 use sprung::{Change, Vec3};
-use sprung_driver::{Command, Driver, Pull};
+use sprung_driver::{Command, Driver, Handle, Options, Pull};
 
 fn gravity(g: f32) -> Change {
     Change::Gravity(Vec3::new(0.0, g, 0.0))
@@ -278,4 +278,54 @@ fn settling_is_recorded_and_can_be_gone_back_over() {
     assert_ne!(at(&mut handle, 9), settled);
     assert_eq!(at(&mut handle, 10), settled);
     assert_eq!(handle.report().timeline.marks.to_vec(), [(10, "settled".to_owned())]);
+}
+
+/// As it does when it is broken off.
+#[test]
+fn settling_that_fails_leaves_everything_as_it_was() {
+    let never = sprung::SettleOptions { residual_force: Some(0.0), max_steps: 100 };
+    let options = Options { settle: never, ..Options::default() };
+    let mut handle = Handle::inline(Driver::with(source("chain"), options).expect("it opens"));
+    for hard in [false, true] {
+        handle.send(Command::Reset);
+        (0..20).for_each(|_| handle.send(Command::Step));
+        handle.send(Command::Pull(Pull { point: 14, target: Vec3::splat(20.0), hard }));
+        for going_back in [false, true] {
+            if going_back {
+                (0..20).for_each(|_| handle.send(Command::Step));
+                handle.send(Command::Release);
+                handle.send(Command::Seek(30));
+            }
+            let before = handle.report();
+            handle.send(Command::Settle);
+            let after = handle.report();
+            check(&after);
+            assert!(after.trouble.is_some());
+            assert_eq!((&after.now, &after.params, after.pull), (&before.now, &before.params, before.pull));
+            assert_eq!((&after.timeline, after.samples.len()), (&before.timeline, before.samples.len()));
+            assert_eq!(
+                (before.pull.is_some(), before.timeline.newest.0),
+                if going_back { (false, 40) } else { (true, 20) }
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_settled_in_the_past_is_a_branch_without_the_hands_of_then() {
+    let mut handle = open("spring");
+    handle.send(Command::Pull(Pull { point: 1, target: Vec3::new(9.0, 0.0, 0.0), hard: false }));
+    (0..20).for_each(|_| handle.send(Command::Step));
+    handle.send(Command::Release);
+    at(&mut handle, 10);
+    assert_eq!(handle.report().params.grabs.len(), 1);
+    handle.send(Command::Settle);
+    let report = handle.report();
+    check(&report);
+    assert!(report.trouble.is_none() && report.params.grabs.is_empty());
+    assert_eq!((report.now.step, report.timeline.newest.0), (10, 10));
+    assert!(report.now.positions[1].x.abs() < 0.05, "nobody pulls it aside: {}", report.now.positions[1]);
+    let settled = now(&mut handle);
+    at(&mut handle, 3);
+    assert_eq!(at(&mut handle, 10), settled);
 }

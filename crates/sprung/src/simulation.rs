@@ -162,9 +162,9 @@ impl Simulation {
         options: SettleOptions,
         progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
     ) -> Result<Settled> {
-        self.history.branch_at(self.state.step);
         let events = self.history.events_at(self.state.step).len();
         let settled = self.settle_unlogged(options, progress, events)?;
+        self.history.branch_at(self.state.step);
         self.history.record(self.state.step, Event::Settle(options));
         Ok(settled)
     }
@@ -174,8 +174,8 @@ impl Simulation {
     /// # Errors
     /// [`Code::OutOfRange`], and then nothing has changed.
     pub fn change(&mut self, change: Change) -> Result<()> {
-        self.history.branch_at(self.state.step);
         self.change_unlogged(&change)?;
+        self.history.branch_at(self.state.step);
         self.history.record(self.state.step, Event::Change(change));
         Ok(())
     }

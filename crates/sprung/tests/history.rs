@@ -2,11 +2,12 @@
 
 mod common;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use common::{scenes, steps};
 use proptest::prelude::*;
-use sprung::{Change, ContactLaw, Event, Grab, Params, Plane, SettleOptions, Simulation, Vec3};
+use sprung::{Change, Code, ContactLaw, Event, Grab, Params, Plane, SettleOptions, Simulation, Vec3};
 
 /// One of every kind of change, for a scene with at least 15 points and 14 springs.
 fn every_change() -> Vec<Change> {
@@ -222,6 +223,22 @@ fn a_replay_in_small_portions_ends_at_the_same_bits() {
         }
     }
     assert_eq!(run.recorded_steps(), 0..=newest, "looking around drops nothing");
+}
+
+#[test]
+fn settling_that_is_broken_off_drops_nothing() {
+    let (mut run, arrived) = eventful(64 << 20);
+    let (newest, events) = (*run.recorded_steps().end(), run.log().len());
+    run.rewind_to(100).expect("it is recorded");
+    let here = run.state().clone();
+    let never = SettleOptions { residual_force: Some(0.0), max_steps: 300 };
+    let broken_off = run.settle_with(never, &mut |_| ControlFlow::Break(()));
+    assert_eq!(broken_off.map_err(|error| error.code()), Err(Code::Interrupted));
+    assert_eq!(run.settle(never).map_err(|error| error.code()), Err(Code::NotSettled));
+    assert!(run.change(Change::Mass(0..99, 1.0)).is_err(), "nor does a change that is refused");
+    assert_eq!((run.state(), run.log().len(), run.recorded_steps()), (&here, events, 0..=newest));
+    run.rewind_to(newest).expect("it is recorded");
+    assert_eq!(run.state_hash(), arrived[newest as usize]);
 }
 
 #[test]
