@@ -13,6 +13,13 @@ pub(crate) struct Setting {
     pub auto: Option<Auto>,
 }
 
+impl Setting {
+    /// Whether the two ask for the same.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.auto == other.auto && settings_are_same(&self.params, &other.params)
+    }
+}
+
 /// The parameters without the hand's grabs and the points that it carries.
 pub(crate) fn without_hands(params: &Params) -> Params {
     Params { grabs: Vec::new(), carried: Default::default(), ..params.clone() }

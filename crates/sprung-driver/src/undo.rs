@@ -4,7 +4,7 @@
 
 use sprung::Model;
 
-use crate::settings::{Setting, settings_are_same};
+use crate::settings::Setting;
 
 /// Edits kept at the most.
 const DEEPEST: usize = 200;
@@ -42,7 +42,7 @@ impl Undo {
 
     /// An edit was made. If it goes on with the last one, the two are one.
     pub fn push(&mut self, label: &str, before: Setting, after: Setting, continues: bool) {
-        if before.auto == after.auto && settings_are_same(&before.params, &after.params) {
+        if before.is_same(&after) {
             return;
         }
         self.undone.clear();
@@ -56,6 +56,10 @@ impl Undo {
             }
         }
         self.is_open = true;
+        // A slider that is back where it was has changed nothing. Should it go on, that is another edit.
+        if self.done.pop_if(|last| last.before.is_same(&last.after)).is_some() {
+            self.is_open = false;
+        }
     }
 
     /// The last edit's label and the setting before it.

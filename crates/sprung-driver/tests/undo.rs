@@ -85,11 +85,16 @@ proptest! {
                     settings.truncate(here + 1);
                     if continues && is_open && settings[here].0 == label {
                         settings[here].1 = new;
+                        is_open = settings[here].1 != settings[here - 1].1;
+                        if !is_open {
+                            settings.truncate(here);
+                            here -= 1;
+                        }
                     } else {
                         settings.push((label, new));
                         here += 1;
+                        is_open = true;
                     }
-                    is_open = true;
                 }
             }
             let report = handle.report();
@@ -124,6 +129,27 @@ fn a_slider_that_is_dragged_is_one_edit() {
     handle.send(Command::Open(Box::new(common::source("spring"))));
     let report = handle.report();
     assert!(report.undo.is_none() && report.redo.is_none());
+}
+
+#[test]
+fn a_slider_that_is_dragged_away_and_back_leaves_nothing_to_undo() {
+    let mut handle = open("chain");
+    let drag = |handle: &mut sprung_driver::Handle, values: &[f32]| {
+        for (index, &value) in values.iter().enumerate() {
+            let change = Change::Gravity(Vec3::Y * value);
+            handle.send(Command::Edit(Edit { continues: index > 0, ..Edit::new("gravity", vec![change]) }));
+        }
+    };
+    drag(&mut handle, &[-5.0, -3.0]);
+    drag(&mut handle, &[-2.0, -3.0]);
+    assert_eq!(handle.report().undo.as_deref(), Some("gravity"));
+    // Back where it began and on again: one more edit, not the first one's continuation.
+    drag(&mut handle, &[-2.0, -3.0, -1.0]);
+    for expected in [-3.0, -9.81] {
+        handle.send(Command::Undo);
+        assert_eq!(handle.report().params.gravity.y, expected);
+    }
+    assert_eq!(handle.report().undo, None);
 }
 
 #[test]
