@@ -11,8 +11,9 @@ pub const DEFAULT_HISTORY_BYTES: usize = 256 << 20;
 /// Memory and threads for a driver.
 #[derive(Clone)]
 pub struct Options {
-    /// Memory for the checkpoints of the recorded run, bytes. The rest is replayed from them, so that less memory means
-    /// slower seeking, never less to go back to.
+    /// Memory for the recorded run, bytes: the log of what was done, which is kept whole, and checkpoints in what that
+    /// leaves, or in a quarter. The rest is replayed from them, so that less memory means slower seeking, never less to go
+    /// back to.
     pub history_bytes: usize,
     /// Scenes that need more than this are refused, bytes. `None`: no limit.
     pub memory_limit: Option<u64>,

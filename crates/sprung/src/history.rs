@@ -6,11 +6,15 @@ use crate::params::{Change, Params};
 use crate::settle::SettleOptions;
 use crate::state::State;
 
-/// Memory for checkpoints unless said otherwise, bytes. The first state is always kept.
+/// Memory for checkpoints and log unless said otherwise, bytes. The first state and the log are always kept.
 pub const DEFAULT_HISTORY_BYTES: usize = 64 << 20;
 
 /// Steps between the newest checkpoints; older ones lie further apart when the memory is used up.
 const GAP: u64 = 64;
+
+/// The part of the memory that checkpoints may take however much has been done: without any, each look back would be a
+/// replay from the first state.
+const LEAST_SHARE: usize = 4;
 
 /// Checkpoints kept at the most.
 const MOST_CHECKPOINTS: usize = 256;
@@ -27,13 +31,21 @@ pub enum Event {
 impl Event {
     /// Whether this leaves nothing of an event that came just before it.
     fn replaces(&self, before: &Self) -> bool {
-        use Change::{Carry, Grab, Place};
+        use Change::{Carry, Grab, Params, Place};
         let (Self::Change(new), Self::Change(old)) = (self, before) else { return false };
         match (new, old) {
             (Grab(new), Grab(old)) => new.point == old.point,
             // Letting go is another matter: the point keeps the velocity that it was carried with.
             (Carry(new, Some(_)), Carry(old, Some(_))) | (Place(new, _), Place(old, _)) => new == old,
+            (Params(_), Params(_)) => true,
             _ => false,
+        }
+    }
+
+    fn params(&self) -> Option<&Arc<Params>> {
+        match self {
+            Self::Change(Change::Params(params)) => Some(params),
+            _ => None,
         }
     }
 }
@@ -53,7 +65,10 @@ pub(crate) struct History {
     checkpoints: Vec<Arc<Checkpoint>>,
     /// In ascending order of the step.
     log: Vec<(u64, Event)>,
+    /// For both together, bytes. The log is kept whole, and checkpoints make room for it.
     budget: usize,
+    checkpoint_bytes: usize,
+    log_bytes: usize,
     newest: u64,
 }
 
@@ -67,7 +82,15 @@ pub(crate) struct Checkpoint {
 impl History {
     pub fn new(first: Arc<Checkpoint>, bytes: usize) -> Self {
         let newest = first.state.step;
-        Self { first, checkpoints: Vec::new(), log: Vec::new(), budget: bytes, newest }
+        Self {
+            first,
+            checkpoints: Vec::new(),
+            log: Vec::new(),
+            budget: bytes,
+            checkpoint_bytes: 0,
+            log_bytes: 0,
+            newest,
+        }
     }
 
     pub fn first(&self) -> &Arc<Checkpoint> {
@@ -86,18 +109,39 @@ impl History {
     /// Something new is about to be done at `step`: what was recorded beyond it is another branch, and is dropped.
     pub fn branch_at(&mut self, step: u64) {
         if step < self.newest {
-            self.log.retain(|(at, _)| *at <= step);
+            while self.log.last().is_some_and(|(at, _)| *at > step) {
+                self.drop_last_event();
+            }
             self.checkpoints.retain(|checkpoint| checkpoint.state.step <= step);
+            self.count_checkpoints();
             self.newest = step;
         }
     }
 
-    /// Notes what was done. Of a point that is dragged along between two steps only the last grab, carry or place counts.
+    /// Notes what was done. Of a point that is dragged along between two steps only the last grab, carry or place counts,
+    /// and of parameters that a slider sets over and over only the last.
     pub fn record(&mut self, step: u64, event: Event) {
-        match self.log.last_mut() {
-            Some((at, last)) if *at == step && event.replaces(last) => *last = event,
-            _ => self.log.push((step, event)),
+        if self.log.last().is_some_and(|(at, last)| *at == step && event.replaces(last)) {
+            self.drop_last_event();
         }
+        self.log_bytes += self.bytes_of(&event);
+        self.log.push((step, event));
+        while self.checkpoint_bytes > self.room() && self.drop_most_dispensable(step) {}
+    }
+
+    fn drop_last_event(&mut self) {
+        if let Some((_, event)) = self.log.pop() {
+            self.log_bytes -= self.bytes_of(&event);
+        }
+    }
+
+    /// Memory of an event that comes last in the log, bytes.
+    fn bytes_of(&self, event: &Event) -> usize {
+        let own = event.params().map_or(0, |own| {
+            let before = self.log.iter().rev().find_map(|(_, event)| event.params());
+            own.bytes_apart_from(before.unwrap_or(&self.first.params))
+        });
+        size_of::<(u64, Event)>() + own
     }
 
     /// A step was taken.
@@ -108,18 +152,33 @@ impl History {
         }
         let last = self.checkpoints.last().unwrap_or(&self.first);
         let needed = size(state, params, &last.params);
-        if needed > self.budget {
+        if needed > self.room() {
             return;
         }
-        while self.checkpoint_bytes() + needed > self.budget || self.checkpoints.len() >= MOST_CHECKPOINTS {
-            let Some(dispensable) = self.most_dispensable(state.step) else { return };
-            self.checkpoints.remove(dispensable);
+        while self.checkpoint_bytes + needed > self.room() || self.checkpoints.len() >= MOST_CHECKPOINTS {
+            if !self.drop_most_dispensable(state.step) {
+                return;
+            }
         }
         self.checkpoints.push(Arc::new(Checkpoint { state: state.clone(), params: params.clone() }));
+        self.count_checkpoints();
     }
 
-    /// The checkpoint without which the gap left behind is smallest in proportion to how long ago it began; a checkpoint
-    /// at step `next` is about to follow.
+    /// Memory for checkpoints, bytes.
+    fn room(&self) -> usize {
+        self.budget.saturating_sub(self.log_bytes).max(self.budget / LEAST_SHARE)
+    }
+
+    /// Drops a checkpoint, now that the run is at step `next`; gives whether there was one.
+    fn drop_most_dispensable(&mut self, next: u64) -> bool {
+        let Some(dispensable) = self.most_dispensable(next) else { return false };
+        self.checkpoints.remove(dispensable);
+        self.count_checkpoints();
+        true
+    }
+
+    /// The checkpoint without which the gap left behind is smallest in proportion to how long ago it began, seen from
+    /// step `next`.
     fn most_dispensable(&self, next: u64) -> Option<usize> {
         let step = |index: usize| self.checkpoints[index].state.step;
         let share = |index: usize| {
@@ -145,27 +204,17 @@ impl History {
 
     /// Memory of everything that is kept, bytes: the first state, the checkpoints, and the log.
     pub fn bytes(&self) -> usize {
-        let mut before = &self.first.params;
-        let mut bytes = size(&self.first.state, before, before) + self.checkpoint_bytes();
-        for (_, event) in &self.log {
-            bytes += size_of::<(u64, Event)>();
-            if let Event::Change(Change::Params(params)) = event {
-                bytes += params.bytes_apart_from(before);
-                before = params;
-            }
-        }
-        bytes
+        let first = &self.first;
+        size(&first.state, &first.params, &first.params) + self.checkpoint_bytes + self.log_bytes
     }
 
-    /// Memory of the checkpoints, bytes.
-    fn checkpoint_bytes(&self) -> usize {
+    fn count_checkpoints(&mut self) {
         let mut before = &self.first.params;
-        let mut bytes = 0;
+        self.checkpoint_bytes = 0;
         for checkpoint in &self.checkpoints {
-            bytes += size(&checkpoint.state, &checkpoint.params, before);
+            self.checkpoint_bytes += size(&checkpoint.state, &checkpoint.params, before);
             before = &checkpoint.params;
         }
-        bytes
     }
 }
 

@@ -60,18 +60,19 @@ pub struct Simulation {
     ledger: Option<Ledger>,
     snapshot: Snapshot,
     forces: Vec<Vec3>,
-    /// If placing a point was the last thing done: how it was before.
+    /// If placing a point or setting all parameters was the last thing done: how it was before.
     placed: Option<Placed>,
 }
 
-/// A point before it was placed. A hand that moves a point about while time stands still places it over and over; each
-/// time it is taken from where it was at first, so that the last place alone counts, to the bit.
-#[derive(Clone, Copy)]
-struct Placed {
-    point: usize,
-    position: [Vec3; 2],
-    velocity: [Vec3; 2],
-    work_in: f64,
+/// How it was before something was put in place. A hand that moves a point about while time stands still places it over
+/// and over, as a slider does with parameters; each time that begins from how it was at first, so that the last place alone
+/// counts, to the bit: the log keeps no other.
+#[derive(Clone)]
+enum Placed {
+    /// A point.
+    Point { point: usize, position: [Vec3; 2], velocity: [Vec3; 2], work_in: f64 },
+    /// All parameters: they may have stopped points, and the clock.
+    Params(Arc<Checkpoint>),
 }
 
 impl Simulation {
@@ -271,9 +272,10 @@ impl Simulation {
         self.ledger = on.then(|| Ledger::new(&self.model));
     }
 
-    /// Bounds the memory for checkpoints, bytes, and starts the log anew from the current state, the earliest that can then
-    /// be rewound to. Zero keeps that state only. Checkpoints lie close together in the recent past and ever further apart
-    /// before it; every step can be gone to, but one that is long past takes longer.
+    /// Sets the memory for checkpoints and log, bytes, and starts both anew from the current state, the earliest that can
+    /// then be rewound to. Zero keeps no checkpoint but that. Checkpoints lie close together in the recent past and ever
+    /// further apart before it; every step can be gone to, but one that is long past takes longer. The log is kept whole:
+    /// checkpoints make room for it, down to a quarter of this memory.
     pub fn keep_history(&mut self, bytes: usize) {
         self.history_budget = bytes;
         let untouched = self.state == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
@@ -349,12 +351,23 @@ impl Simulation {
         if let Change::Carry(point, _) | Change::Place(point, _) = change {
             return self.move_point(*point, change);
         }
-        let before = moves_energy(change).then(|| self.energy().total());
-        let old = self.params.clone();
-        Arc::make_mut(&mut self.params).apply(&self.model, change)?;
-        self.placed = None;
+        let mut wanted = Params::clone(&self.params);
+        wanted.apply(&self.model, change)?;
         self.solver_is_stale |=
-            !self.params.shares_arrays_with(&old) || !self.params.carried.keys().eq(old.carried.keys());
+            !wanted.shares_arrays_with(&self.params) || !wanted.carried.keys().eq(self.params.carried.keys());
+        let placed = self.placed.take();
+        if matches!(change, Change::Params(_)) {
+            let first = match placed {
+                Some(Placed::Params(first)) => {
+                    Checkpoint { state: self.state, params: self.params } = Checkpoint::clone(&first);
+                    first
+                }
+                _ => Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() }),
+            };
+            self.placed = Some(Placed::Params(first));
+        }
+        let before = moves_energy(change).then(|| self.energy().total());
+        let old = std::mem::replace(&mut self.params, Arc::new(wanted));
         if self.params.dt != old.dt {
             self.state.restart_clock();
         }
@@ -372,12 +385,12 @@ impl Simulation {
     fn move_point(&mut self, point: usize, change: &Change) -> Result<()> {
         let old = self.params.clone();
         Arc::make_mut(&mut self.params).apply(&self.model, change)?;
-        let earlier = self.placed.take().filter(|placed| placed.point == point);
+        let earlier = self.placed.take();
         if let Change::Place(_, position) = change {
             if let Some(placed) = earlier {
-                placed.undo(&mut self.state);
+                placed.take_back(point, &mut self.state);
             }
-            self.placed = Some(Placed::new(point, &self.state));
+            self.placed = Some(Placed::point(point, &self.state));
             let before = energy::around(&self.model, &old, &self.state, point);
             self.state.position[point] = without_negligible(*position);
             self.state.position_low[point] = Vec3::ZERO;
@@ -540,8 +553,8 @@ fn hold(params: &Params, state: &mut State, point: usize) {
 }
 
 impl Placed {
-    fn new(point: usize, state: &State) -> Self {
-        Self {
+    fn point(point: usize, state: &State) -> Self {
+        Self::Point {
             point,
             position: [state.position[point], state.position_low[point]],
             velocity: [state.velocity[point], state.velocity_low[point]],
@@ -549,10 +562,15 @@ impl Placed {
         }
     }
 
-    fn undo(self, state: &mut State) {
-        [state.position[self.point], state.position_low[self.point]] = self.position;
-        [state.velocity[self.point], state.velocity_low[self.point]] = self.velocity;
-        state.ledger.work_in = self.work_in;
+    /// If it was this point that was placed, that has not happened.
+    fn take_back(self, this: usize, state: &mut State) {
+        if let Self::Point { point, position, velocity, work_in } = self
+            && point == this
+        {
+            [state.position[point], state.position_low[point]] = position;
+            [state.velocity[point], state.velocity_low[point]] = velocity;
+            state.ledger.work_in = work_in;
+        }
     }
 }
 
