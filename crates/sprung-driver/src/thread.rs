@@ -6,7 +6,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
 
 use sprung::{Code, Error, Result};
 use web_time::{Duration, Instant};
@@ -32,9 +31,8 @@ const WORD_EVERY: Duration = Duration::from_millis(100);
 
 /// The front end's side.
 pub(crate) struct Thread {
-    commands: Option<Sender<Command>>,
+    commands: Sender<Command>,
     shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
 }
 
 /// What both sides see.
@@ -57,17 +55,15 @@ impl Thread {
                 theirs.publish_end(&*panic);
             }
         };
-        let thread = std::thread::Builder::new().name("driver".to_owned()).spawn(body).map_err(|error| {
+        std::thread::Builder::new().name("driver".to_owned()).spawn(body).map_err(|error| {
             Error::new(Code::Unsupported, format!("the system gives no thread to simulate on: {error}"))
         })?;
-        Ok(Self { commands: Some(sender), shared, thread: Some(thread) })
+        Ok(Self { commands: sender, shared })
     }
 
     pub fn send(&self, command: Command) {
-        if let Some(commands) = &self.commands {
-            // A thread that has ended has said so in its last report.
-            let _ = commands.send(command);
-        }
+        // A thread that has ended has said so in its last report.
+        let _ = self.commands.send(command);
     }
 
     pub fn report(&self) -> Arc<Report> {
@@ -77,19 +73,18 @@ impl Thread {
 
 impl Drop for Thread {
     fn drop(&mut self) {
+        // It ends by itself, at once or after what cannot be broken off, such as the search for a true limit, which may take
+        // seconds: nobody waits for that to quit.
         self.shared.quits.store(true, Ordering::Relaxed);
-        self.commands = None;
-        if let Some(thread) = self.thread.take() {
-            // Its panics have been caught inside.
-            let _ = thread.join();
-        }
     }
 }
 
 impl Shared {
     fn publish(&self, report: Arc<Report>) {
         *lock(&self.newest) = report;
-        lock(&self.wake)();
+        if !self.quits.load(Ordering::Relaxed) {
+            lock(&self.wake)();
+        }
     }
 
     /// As the last report, but busy with this.

@@ -2,9 +2,9 @@
 
 mod common;
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use common::{check, source};
@@ -100,6 +100,48 @@ fn dropping_the_handle_ends_it_whatever_it_does() {
                 .is_err_and(|error| error == std::sync::mpsc::RecvTimeoutError::Disconnected)
         );
     }
+}
+
+/// Threads that stand still while the gate is shut.
+struct Gated {
+    gate: Mutex<()>,
+    has_come: Mutex<Sender<()>>,
+}
+
+impl Workers for Gated {
+    fn count(&self) -> usize {
+        2
+    }
+
+    fn run(&self, job: &(dyn Fn(usize) + Sync)) {
+        // Whoever waited for this may have gone.
+        let _ = self.has_come.lock().expect("nobody dies").send(());
+        let _open = self.gate.lock().expect("nobody dies");
+        (0..2).for_each(job);
+    }
+}
+
+/// As the search for the true limit of a large model does, which takes seconds.
+#[test]
+fn dropping_the_handle_does_not_wait_for_what_cannot_be_broken_off() {
+    let (has_come, coming) = channel();
+    let workers = Arc::new(Gated { gate: Mutex::new(()), has_come: Mutex::new(has_come) });
+    let options = Options { workers: workers.clone(), ..Options::default() };
+    let (mut handle, woken) = start(Driver::with(source("jelly"), options).expect("it opens"));
+    let shut = workers.gate.lock().expect("nobody dies");
+    handle.send(Command::Step);
+    coming.recv_timeout(HANG).expect("it steps");
+    // In a thread of its own, so that this test would fail, and not hang.
+    let (has_dropped, dropped) = channel();
+    std::thread::spawn(move || {
+        drop(handle);
+        has_dropped.send(()).expect("somebody waits for it");
+    });
+    dropped.recv_timeout(HANG).expect("it is dropped while the step stands still");
+    drop(shut);
+    // Let go, the thread ends, and with it the sender of wakes.
+    while woken.try_recv().is_ok() {}
+    assert_eq!(woken.recv_timeout(HANG), Err(std::sync::mpsc::RecvTimeoutError::Disconnected));
 }
 
 #[test]
