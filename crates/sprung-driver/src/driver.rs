@@ -112,7 +112,7 @@ impl Driver {
     }
 
     /// As [`advance`](Self::advance), also with a say in what cannot be done in portions.
-    pub fn advance_under(&mut self, seconds: f64, supervisor: &mut dyn Supervisor) {
+    pub(crate) fn advance_under(&mut self, seconds: f64, supervisor: &mut dyn Supervisor) {
         if seconds > 0.0 && seconds.is_finite() {
             self.clock += seconds;
         }

@@ -15,16 +15,13 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use sprung::{Grab, Material, Model, ModelBuilder, Params, Vec3, stability};
+use sprung::{Grab, Material, Model, ModelBuilder, Params, SAFE_SHARE, Vec3, stability};
 
 /// The slowest a point alone may swing at the hand's spring, Hz.
 const SLOWEST: f64 = 1.5;
 
 /// Shares of the critical damping, best first.
 const DAMPING_RATIOS: [f64; 3] = [0.5, 0.25, 0.1];
-
-/// How far below a limit dt stays: the network moves while it is pulled.
-const MARGIN: f64 = 0.95;
 
 /// Halvings of the stiffness before it is taken as it is.
 const MOST_HALVINGS: u32 = 60;
@@ -85,7 +82,7 @@ pub(crate) fn soft_spring(model: &Model, params: &Params, positions: &[Vec3], po
         return spring(stiffness, DAMPING_RATIOS[0]);
     };
     // Which limit the step is within now, if any.
-    let needed = params.dt / MARGIN;
+    let needed = params.dt / SAFE_SHARE;
     let is_within = |which| near.limit(which, (0.0, 0.0)) >= needed;
     let Some(limit) =
         [Which::EveryConfiguration, Which::Certified].into_iter().find(|&which| is_within(which))
@@ -194,7 +191,7 @@ mod tests {
                     |params: &Params, model: &Model, at: &[Vec3]| stability::certified(model, params, at),
                 ] {
                     let limit = |params| limit(params, &model, &state.position).expect("it has springs").dt;
-                    let was_within = limit(&params) >= params.dt / MARGIN;
+                    let was_within = limit(&params) >= params.dt / SAFE_SHARE;
                     assert!(!was_within || limit(&grabbed) >= params.dt, "{} point {point}", builtin.name);
                 }
                 let sag = params.point_mass[point] * 9.81 / stiffness;

@@ -46,5 +46,4 @@ pub use driver::Driver;
 pub use handle::Handle;
 pub use options::{DEFAULT_HISTORY_BYTES, Options};
 pub use report::{Comparison, Opened, Report, Sample, Stability, Timeline, Trouble};
-pub use samples::{MOST_SAMPLES, Samples};
-pub use supervisor::Supervisor;
+pub use samples::Samples;

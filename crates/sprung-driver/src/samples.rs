@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::report::Sample;
 
 /// Samples kept at the most. When they are full, every second one is dropped, and from then on half as many are taken.
-pub const MOST_SAMPLES: usize = 20_000;
+const MOST_SAMPLES: usize = 20_000;
 
 /// Springs whose energy costs so little that every step can have a sample.
 const SPRINGS_FOR_EVERY_STEP: usize = 20_000;
@@ -63,15 +63,6 @@ impl Samples {
     /// All of them, in order of time.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Sample> + Clone {
         self.pieces.iter().flat_map(|piece| piece.iter())
-    }
-
-    /// How many lie before this time, s: the index of the first that does not.
-    pub fn count_before(&self, time: f64) -> usize {
-        let whole = self.pieces.partition_point(|piece| piece.last().is_some_and(|last| last.time < time));
-        match self.pieces.get(whole) {
-            Some(piece) => whole * PIECE + piece.partition_point(|sample| sample.time < time),
-            None => self.len(),
-        }
     }
 
     /// Whether a sample of this step is wanted: it is beyond the newest, and a multiple of the distance.
@@ -153,8 +144,6 @@ mod tests {
         assert_eq!(steps.len(), samples.len());
         assert!(steps.iter().enumerate().all(|(index, &step)| step == 8 * index as u64));
         assert_eq!(samples[777].step, 8 * 777);
-        assert_eq!(samples.count_before(0.01 * 8.0 * 777.0 - 1e-6), 777);
-        assert_eq!(samples.count_before(1e9), samples.len());
     }
 
     #[test]

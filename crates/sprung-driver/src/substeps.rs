@@ -1,10 +1,7 @@
 //! Automatic sub-steps: as many as are stable in every configuration, for the same time of a frame.
 
 use sprung::params::{DT_RANGE, SUBSTEPS_RANGE};
-use sprung::{Code, Error, Model, Params, Result, significant, stability};
-
-/// The part of the every-configuration limit that is taken, as dt = "auto" in a scene does.
-const FRACTION: f64 = 0.95;
+use sprung::{Code, Error, Model, Params, Result, SAFE_SHARE, significant, stability};
 
 /// How sub-steps are chosen while the switch is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +15,8 @@ impl Auto {
         Self { own: (params.dt, params.substeps) }
     }
 
-    /// dt (s) and sub-steps for these parameters.
+    /// dt (s) and sub-steps for these parameters: dt is a safe share of the limit in every configuration, as with
+    /// `dt = "auto"` in a scene.
     ///
     /// # Errors
     /// [`Code::OutOfRange`] if no number of sub-steps that is allowed is stable.
@@ -29,7 +27,7 @@ impl Auto {
 
     fn choose_for(&self, limit: f64) -> Result<(f64, u32)> {
         let (dt, substeps) = self.own;
-        let longest = FRACTION * limit;
+        let longest = SAFE_SHARE * limit;
         if dt <= longest {
             return Ok(self.own);
         }

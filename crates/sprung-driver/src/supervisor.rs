@@ -1,7 +1,7 @@
 //! Who says how long the driver may work.
 
-/// Bounds the work of one [`Driver::advance_under`](crate::Driver::advance_under).
-pub trait Supervisor {
+/// Bounds the work of one `Driver::advance_under`.
+pub(crate) trait Supervisor {
     /// Whether there is time for one more step.
     fn may_go_on(&mut self) -> bool;
 

@@ -38,7 +38,7 @@ pub use settle::{SettleOptions, Settled};
 pub use simulation::Simulation;
 pub use state::{Moment, Snapshot, State};
 pub use text::significant;
-pub use watch::{BlowUp, Cause};
+pub use watch::{BlowUp, Cause, SAFE_SHARE};
 pub use workers::{Inline, Workers};
 
 /// The README's example is one of the tests.

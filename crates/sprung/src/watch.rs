@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::energy::Energy;
 use crate::model::Model;
-use crate::params::{DT_RANGE, Params, SUBSTEPS_RANGE};
+use crate::params::{DT_RANGE, Params};
 use crate::stability::{self, Setter};
 use crate::state::State;
 use crate::text::{round_down, significant};
@@ -17,8 +17,9 @@ use crate::text::{round_down, significant};
 /// is looked at: the energy of a large model costs about as much as a step.
 const PATIENCE: u64 = 20;
 
-/// The part of a limit that is suggested as a step.
-const SHARE: f64 = 0.95;
+/// The part of a limit on dt that is safe to take, 5 % below it. The limit itself is safe in real numbers; the margin is for
+/// the rounding of a float32 step, for a mode at its very limit, which rings undamped, and for a network that moves on.
+pub const SAFE_SHARE: f64 = 0.95;
 
 /// Energy from nowhere below this share of the energy at the start is rounding.
 const ROUNDING: f64 = 1e-6;
@@ -93,7 +94,7 @@ impl BlowUp {
                 None => String::new(),
             },
             dt: params.dt,
-            damping_scale: stability::damping_scale(model, params, &good.position, params.dt, SHARE),
+            damping_scale: stability::damping_scale(model, params, &good.position, params.dt, SAFE_SHARE),
             dt_limit_certified: certified.map(|limit| limit.dt),
             dt_limit_every_configuration: stability::every_configuration(model, params).map(|limit| limit.dt),
         }
@@ -105,19 +106,7 @@ impl BlowUp {
         let crossed = |limit: &f64| self.dt > *limit;
         let limit =
             self.dt_limit_certified.filter(crossed).or(self.dt_limit_every_configuration.filter(crossed))?;
-        Some(round_down(SHARE * limit))
-    }
-
-    /// As [`suggested_dt`](Self::suggested_dt), but for frames as long as they are: how many steps for each, and how long
-    /// each is, s. `None` where no allowed number of allowed steps is enough.
-    pub fn suggested_substeps(&self, params: &Params) -> Option<(u32, f64)> {
-        let frame = self.dt * f64::from(params.substeps);
-        let substeps = (frame / self.suggested_dt()?).ceil();
-        if substeps > f64::from(*SUBSTEPS_RANGE.end()) {
-            return None;
-        }
-        let dt = frame / substeps;
-        DT_RANGE.contains(&dt).then_some((substeps as u32, dt))
+        Some(round_down(SAFE_SHARE * limit))
     }
 
     /// By how much to multiply the damping of all springs so that dt, unchanged, is 95 % of the limit. `None` where
