@@ -24,7 +24,7 @@ pub(crate) struct Playing {
     pub pace: Pace,
     /// Simulated time that is due, s.
     due: f64,
-    /// Real and simulated seconds of the window so far.
+    /// Real and simulated seconds of the window so far: of these also the part of a step that is due, as it is drawn.
     window: (f64, f64),
     speed: Option<f64>,
     seconds_per_step: f64,
@@ -47,12 +47,13 @@ impl Playing {
         if !(seconds > 0.0 && seconds.is_finite()) {
             return;
         }
-        self.due += seconds.min(LONGEST_STRETCH) * self.factor(params);
-        self.window.0 += seconds;
         if self.window.0 >= SPEED_WINDOW {
             self.speed = Some(self.window.1 / self.window.0);
             self.window = (0.0, 0.0);
         }
+        let due = seconds.min(LONGEST_STRETCH) * self.factor(params);
+        self.due += due;
+        self.window = (self.window.0 + seconds, self.window.1 + due);
     }
 
     /// How many steps of `dt` (s) are due.
@@ -64,12 +65,13 @@ impl Playing {
     /// A step of `dt` (s) was taken.
     pub fn stepped(&mut self, dt: f64) {
         self.due = (self.due - dt).max(0.0);
-        self.window.1 += dt;
     }
 
     /// What could not be done in time is dropped: simulated time slows down instead of piling up.
     pub fn drop_arrears(&mut self, dt: f64) {
-        self.due = self.due.min(dt);
+        let dropped = (self.due - dt).max(0.0);
+        self.due -= dropped;
+        self.window.1 -= dropped;
     }
 
     /// Where between the last two steps the moment to draw lies.
