@@ -12,8 +12,15 @@ use crate::window::{Display, Window, share_changed};
 /// How long the window is left alone while its memory is watched.
 const LONG: Duration = Duration::from_secs(60);
 
-/// Memory it may take more after that time, bytes: the recording of so small a scene, and what a driver caches.
-const GROWTH: u64 = 48 << 20;
+/// Memory that a recording of so small a scene takes, bytes: a sample of less than 200 bytes for each step of 0.01 s.
+const RECORDING: u64 = LONG.as_secs() * 100 * 200;
+
+/// A picture of the window, as wide and high as it opens, of four bytes a pixel.
+const PICTURE: u64 = 4 * 1280 * 820;
+
+/// Memory it may take more after that time, bytes: the recording, and ten pictures that a driver caches. A picture lost
+/// every six seconds, or 12 KB with each of sixty a second, would be more.
+const GROWTH: u64 = RECORDING + 10 * PICTURE;
 
 /// Less of a picture than this changes by a cursor or a digit.
 const SAME: f64 = 2e-3;

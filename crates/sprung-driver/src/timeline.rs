@@ -70,8 +70,10 @@ impl Recorded {
         let Some(&(step, start, dt)) = segment.checked_sub(1).and_then(|index| self.clock.get(index)) else {
             return self.first.0;
         };
-        // What rounding took from the quotient must not take a step.
-        let steps = ((time - start) / dt * (1.0 + 1e-12) + 1e-6) as u64;
+        // What rounding took must not take a step: a time is start + n·dt, rounded twice, and so is that of another run at
+        // the same moment; difference and quotient are rounded once each. That makes six halves of an ulp at the most.
+        let rounding = 3.0 * f64::EPSILON * (time.abs() + start.abs()) / dt;
+        let steps = ((time - start) / dt + rounding) as u64;
         let end = self.clock.get(segment).map_or(self.newest.0, |next| next.0);
         step.saturating_add(steps).min(end)
     }
@@ -105,6 +107,23 @@ mod tests {
         assert_eq!((recorded.step_at(-1.0), recorded.step_at(1.4), recorded.step_at(99.0)), (0, 10, 20));
         recorded.branch_at(&state(10, 1.0));
         assert_eq!((recorded.clock.len(), recorded.newest), (1, (10, 1.0)));
+    }
+
+    /// Far from the start, where a step is a few thousand ulps of the time.
+    #[test]
+    fn rounding_neither_takes_nor_gives_a_step() {
+        for (start, dt, first) in [(0.0, 1e-9, 1u64 << 40), (1e5, 3e-8, 7), (0.1, 0.013, 999_999_999)] {
+            let time = |step: u64| start + step as f64 * dt;
+            let newest = first + 1000;
+            let clock = Arc::new(vec![(0, start, dt)]);
+            let recorded =
+                Recorded { first: (0, start), newest: (newest, time(newest)), clock, marks: Arc::default() };
+            for step in first..newest {
+                assert_eq!(recorded.step_at(time(step)), step, "{start} s and steps of {dt} s");
+                let just_before = time(step) - 0.05 * dt;
+                assert_eq!(recorded.step_at(just_before), step - 1, "{start} s and steps of {dt} s");
+            }
+        }
     }
 
     #[test]
