@@ -140,7 +140,6 @@ impl Driver {
     }
 
     /// The scene that plays, by its serial number.
-    #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn plays(&self) -> Option<u64> {
         self.playing.on.then_some(self.opened.serial)
     }

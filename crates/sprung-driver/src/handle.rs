@@ -21,9 +21,16 @@ enum Place {
     /// Here, as long as it takes.
     Inline(Box<Driver>),
     /// Here, a few milliseconds at a time.
-    Page(Box<Driver>),
+    Page(Box<Page>),
     #[cfg(not(target_arch = "wasm32"))]
     Thread(Thread),
+}
+
+/// A driver on a page.
+struct Page {
+    driver: Driver,
+    /// The scene that played when time passed last.
+    played: Option<u64>,
 }
 
 impl Handle {
@@ -36,7 +43,7 @@ impl Handle {
     /// A driver that works when it is told that time has passed, for some milliseconds at the most: for pages, which have no
     /// other thread to work on.
     pub fn page(driver: Driver) -> Self {
-        Self(Place::Page(Box::new(driver)))
+        Self(Place::Page(Box::new(Page { driver, played: None })))
     }
 
     /// A driver on a thread of its own. `wake` is called there when there is a new report.
@@ -55,21 +62,18 @@ impl Handle {
                 driver.obey(command);
                 driver.advance(0.0, &mut || true);
             }
-            Place::Page(driver) => driver.obey(command),
+            Place::Page(page) => page.driver.obey(command),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(thread) => thread.send(command),
         }
     }
 
-    /// Real time has passed, s. Inline and on a page, this is when the work is done; a thread has its own clock.
+    /// Real time has passed, s. Inline and on a page, this is when the work is done; a thread has its own clock. As there, what
+    /// went by on a page before something began to play is not owed to it.
     pub fn pass(&mut self, seconds: f64) {
         match &mut self.0 {
             Place::Inline(driver) => driver.advance(seconds, &mut || true),
-            Place::Page(driver) => {
-                let begin = Instant::now();
-                driver.advance(seconds, &mut || begin.elapsed() < PAGE_BUDGET);
-                driver.measured(begin.elapsed().as_secs_f64());
-            }
+            Place::Page(page) => page.pass(seconds),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(_) => {}
         }
@@ -78,9 +82,20 @@ impl Handle {
     /// The newest report.
     pub fn report(&mut self) -> Arc<Report> {
         match &mut self.0 {
-            Place::Inline(driver) | Place::Page(driver) => driver.report(),
+            Place::Inline(driver) => driver.report(),
+            Place::Page(page) => page.driver.report(),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(thread) => thread.report(),
         }
+    }
+}
+
+impl Page {
+    fn pass(&mut self, seconds: f64) {
+        let seconds = if self.driver.plays() == self.played { seconds } else { 0.0 };
+        let begin = Instant::now();
+        self.driver.advance(seconds, &mut || begin.elapsed() < PAGE_BUDGET);
+        self.driver.measured(begin.elapsed().as_secs_f64());
+        self.played = self.driver.plays();
     }
 }
