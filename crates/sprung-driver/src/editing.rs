@@ -31,7 +31,18 @@ impl Driver {
         let sets_step =
             edit.changes.iter().any(|change| matches!(change, Change::Dt(_) | Change::Substeps(_)));
         let auto = self.auto.filter(|_| !sets_step);
-        self.edit_to(&edit.label, wanted, auto, edit.continues)?;
+        let before = self.setting();
+        match &edit.changes[..] {
+            // As it is, where that is all: what the run's log then keeps is not every spring's value, but one.
+            [change] if auto.is_none() && !matches!(change, Change::Place(..)) => {
+                if self.run.set_by(change.clone(), &wanted)? {
+                    self.run.mark(&edit.label);
+                }
+                self.auto = None;
+            }
+            _ => self.put(&Setting { params: Arc::new(wanted), auto }, &edit.label)?,
+        }
+        self.undo.push(&edit.label, before, self.setting(), edit.continues);
         // Where a point is is no parameter: it cannot be undone.
         for change in edit.changes.iter().filter(|change| matches!(change, Change::Place(..))) {
             self.run.change(change.clone())?;

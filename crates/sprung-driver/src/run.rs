@@ -135,6 +135,18 @@ impl Run {
         Ok(true)
     }
 
+    /// As [`set`](Self::set), by a change that makes these parameters of those now.
+    ///
+    /// # Errors
+    /// As [`change`](Self::change).
+    pub fn set_by(&mut self, change: Change, params: &Params) -> Result<bool> {
+        let is_new = !settings_are_same(params, self.params());
+        if is_new {
+            self.change(change)?;
+        }
+        Ok(is_new)
+    }
+
     /// Notes what was done now.
     pub fn mark(&mut self, label: &str) {
         self.recorded.mark(self.simulation.state(), label);

@@ -131,6 +131,29 @@ fn a_slider_that_is_dragged_is_one_edit() {
     assert!(report.undo.is_none() && report.redo.is_none());
 }
 
+/// Nine megabytes for each value of a slider would soon be too many.
+#[test]
+fn a_slider_that_is_dragged_while_a_large_scene_plays_takes_little_memory() {
+    let mut handle = open("cloth");
+    let model = handle.report().opened.model.clone();
+    handle.send(Command::Play(true));
+    let before = handle.report().timeline.bytes.0;
+    let edits = 60u8;
+    for value in 0..edits {
+        let change = Change::Stiffness(0..model.spring_count(), 300.0 + f32::from(value));
+        handle.send(Command::Edit(Edit { continues: value > 0, ..Edit::new("stiffness", vec![change]) }));
+        handle.pass(1.0 / 60.0);
+    }
+    let report = handle.report();
+    // Checkpoints with a stiffness of their own, and an entry of the log for each edit.
+    let checkpoints = 1 + report.now.step as usize / 64;
+    let most = checkpoints * (48 * model.point_count() + 4 * model.spring_count()) + usize::from(edits) * 256;
+    let taken = report.timeline.bytes.0 - before;
+    assert!(taken <= most, "{taken} bytes for {edits} edits, and {most} are enough");
+    handle.send(Command::Undo);
+    assert_eq!(handle.report().params, handle.report().opened.params);
+}
+
 #[test]
 fn a_slider_that_is_dragged_away_and_back_leaves_nothing_to_undo() {
     let mut handle = open("chain");

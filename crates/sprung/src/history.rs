@@ -31,15 +31,7 @@ pub enum Event {
 impl Event {
     /// Whether this leaves nothing of an event that came just before it.
     fn replaces(&self, before: &Self) -> bool {
-        use Change::{Carry, Grab, Params, Place};
-        let (Self::Change(new), Self::Change(old)) = (self, before) else { return false };
-        match (new, old) {
-            (Grab(new), Grab(old)) => new.point == old.point,
-            // Letting go is another matter: the point keeps the velocity that it was carried with.
-            (Carry(new, Some(_)), Carry(old, Some(_))) | (Place(new, _), Place(old, _)) => new == old,
-            (Params(_), Params(_)) => true,
-            _ => false,
-        }
+        matches!((self, before), (Self::Change(new), Self::Change(old)) if replaces(new, old))
     }
 
     fn params(&self) -> Option<&Arc<Params>> {
@@ -47,6 +39,33 @@ impl Event {
             Self::Change(Change::Params(params)) => Some(params),
             _ => None,
         }
+    }
+}
+
+/// Whether a change leaves nothing of one that came just before it.
+pub(crate) fn replaces(new: &Change, old: &Change) -> bool {
+    use Change::{
+        Carry, Cut, Damping, Force, Grab, Gravity, Mass, Params, Pin, Place, Planes, RestScale, Stiffness,
+        Substeps,
+    };
+    match (new, old) {
+        (Grab(new), Grab(old)) => new.point == old.point,
+        // Letting go is another matter: the point keeps the velocity that it was carried with.
+        (Carry(new, Some(_)), Carry(old, Some(_)))
+        | (Place(new, _), Place(old, _))
+        | (Force(new, _), Force(old, _)) => new == old,
+        (Mass(new, _), Mass(old, _))
+        | (Pin(new, _), Pin(old, _))
+        | (Cut(new, _), Cut(old, _))
+        | (Stiffness(new, _), Stiffness(old, _))
+        | (Damping(new, _), Damping(old, _))
+        | (RestScale(new, _), RestScale(old, _)) => new == old,
+        // Not dt: the clock starts anew with each.
+        (Gravity(_), Gravity(_))
+        | (Planes(_), Planes(_))
+        | (Substeps(_), Substeps(_))
+        | (Params(_), Params(_)) => true,
+        _ => false,
     }
 }
 
@@ -119,7 +138,7 @@ impl History {
     }
 
     /// Notes what was done. Of a point that is dragged along between two steps only the last grab, carry or place counts,
-    /// and of parameters that a slider sets over and over only the last.
+    /// and of a parameter that a slider sets over and over only the last value.
     pub fn record(&mut self, step: u64, event: Event) {
         if self.log.last().is_some_and(|(at, last)| *at == step && event.replaces(last)) {
             self.drop_last_event();

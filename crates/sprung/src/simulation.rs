@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
-use crate::history::{Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
+use crate::history::{self, Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
 use crate::math::without_negligible;
 use crate::model::Model;
 use crate::params::{Change, Params, check_vector};
@@ -60,7 +60,7 @@ pub struct Simulation {
     ledger: Option<Ledger>,
     snapshot: Snapshot,
     forces: Vec<Vec3>,
-    /// If placing a point or setting all parameters was the last thing done: how it was before.
+    /// If placing a point or setting parameters was the last thing done: how it was before.
     placed: Option<Placed>,
 }
 
@@ -71,8 +71,8 @@ pub struct Simulation {
 enum Placed {
     /// A point.
     Point { point: usize, position: [Vec3; 2], velocity: [Vec3; 2], work_in: f64 },
-    /// All parameters: they may have stopped points, and the clock.
-    Params(Arc<Checkpoint>),
+    /// Parameters, by this change: it may have stopped points, and the clock.
+    Params(Change, Arc<Checkpoint>),
 }
 
 impl Simulation {
@@ -170,7 +170,8 @@ impl Simulation {
         Ok(settled)
     }
 
-    /// Changes a parameter from this step on.
+    /// Changes a parameter from this step on. The same one changed over and over between two steps has been changed once: to
+    /// the last value, from what was before the first.
     ///
     /// # Errors
     /// [`Code::OutOfRange`], and then nothing has changed.
@@ -356,15 +357,16 @@ impl Simulation {
         self.solver_is_stale |=
             !wanted.shares_arrays_with(&self.params) || !wanted.carried.keys().eq(self.params.carried.keys());
         let placed = self.placed.take();
-        if matches!(change, Change::Params(_)) {
+        if moves_energy(change) {
+            // A value that is set twice between two steps was set once, from how it was before the first time.
             let first = match placed {
-                Some(Placed::Params(first)) => {
+                Some(Placed::Params(last, first)) if history::replaces(change, &last) => {
                     Checkpoint { state: self.state, params: self.params } = Checkpoint::clone(&first);
                     first
                 }
                 _ => Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() }),
             };
-            self.placed = Some(Placed::Params(first));
+            self.placed = Some(Placed::Params(change.clone(), first));
         }
         let before = moves_energy(change).then(|| self.energy().total());
         let old = std::mem::replace(&mut self.params, Arc::new(wanted));

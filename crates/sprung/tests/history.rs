@@ -205,6 +205,50 @@ fn of_parameters_set_over_and_over_between_two_steps_only_the_last_count() {
 }
 
 #[test]
+fn a_parameter_that_is_set_twice_at_a_step_was_set_once() {
+    let level = |height| vec![Plane { law: ContactLaw::Push, ..Plane::level(height, 60.0, 4.0) }];
+    let twice = [
+        (Change::Gravity(Vec3::X), Change::Gravity(Vec3::Y)),
+        (Change::Planes(level(24.9)), Change::Planes(level(3.0))),
+        (Change::Mass(3..6, 0.0), Change::Mass(3..6, 2.0)),
+        (Change::Pin(3..6, true), Change::Pin(3..6, false)),
+        (Change::Stiffness(0..7, 1.0), Change::Stiffness(0..7, 300.0)),
+        (Change::Damping(0..7, 1.0), Change::Damping(0..7, 0.5)),
+        (Change::RestScale(0..7, 0.1), Change::RestScale(0..7, 1.1)),
+        (Change::Cut(2..3, true), Change::Cut(2..3, false)),
+        (Change::Force(4, Vec3::X), Change::Force(4, Vec3::ZERO)),
+        (Change::Substeps(3), Change::Substeps(4)),
+        (Change::Params(all_at_once()), Change::Params(all_but_the_pin())),
+    ];
+    for (first, last) in twice {
+        let mut run = scenes::engine(&scenes::chain());
+        steps(&mut run, 30);
+        let mut once = run.clone();
+        once.change(last.clone()).expect("allowed");
+        run.change(first.clone()).expect("allowed");
+        let _packed = run.forces();
+        run.change(last.clone()).expect("allowed");
+        assert_eq!((run.log(), run.params()), (once.log(), once.params()), "{first:?}, {last:?}");
+        steps(&mut run, 5);
+        steps(&mut once, 5);
+        assert_eq!(run.state(), once.state(), "{first:?}, {last:?}");
+    }
+    // Of other springs, or with something in between, nothing is forgotten.
+    let mut run = scenes::engine(&scenes::chain());
+    for change in [
+        Change::Stiffness(0..7, 1.0),
+        Change::Stiffness(0..8, 2.0),
+        Change::Stiffness(0..7, 3.0),
+        Change::Dt(0.003),
+        Change::Dt(0.01),
+        Change::Stiffness(0..7, 4.0),
+    ] {
+        run.change(change).expect("allowed");
+    }
+    assert_eq!(run.log().len(), 6);
+}
+
+#[test]
 fn parameters_that_do_not_fit_are_refused_whole() {
     let mut run = scenes::engine(&scenes::chain());
     let before = run.params().clone();
