@@ -1,0 +1,68 @@
+//! The hidden order of points: the one that the step works in, whatever the user's numbers are.
+//!
+//! The step goes through the points once, in order. It is fast where runs of consecutive points have a neighbour at the
+//! same offset, and where the two ends of a spring are near in the order. Lattices numbered row by row have both, and
+//! keep their order. Points numbered anyhow get that order back if they lie on lattices, or else the order of slabs.
+//!
+//! All of it is a function of positions and springs that is the same on every machine: sums, products, square roots
+//! and comparisons in float64, and sorts by total orders.
+
+mod buckets;
+mod lattice_order;
+mod quality;
+mod spatial_order;
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3;
+
+use lattice_order::lattice_order;
+use quality::Quality;
+use spatial_order::spatial_order;
+
+/// An order with this share of springs in stripes needs no other, if its bandwidth is good too.
+const GOOD_SHARE: f64 = 0.9;
+
+/// Up to this bandwidth what the step has at hand stays in a core's own cache.
+const GOOD_BANDWIDTH: u32 = 32_768;
+
+/// The order of lattices is taken from this share of springs in stripes; below it the slabs' smaller bandwidth is worth more.
+const LATTICE_SHARE: f64 = 0.6;
+
+/// A difference of shares that tells in the time of a step.
+const NOTABLE_SHARE: f64 = 0.1;
+
+/// Bandwidths up to this are all the same to the step: that many points fit anywhere.
+const SMALL_BANDWIDTH: u32 = 1024;
+
+/// An order for the step that suits it notably better than the user's: `order[place]` is the point at that place.
+/// `None` if the user's is good, or no better one is found.
+///
+/// `positions` are those of the model as built, m; the ends of `springs` are indices of positions.
+pub(crate) fn hidden_order(positions: &[Vec3], springs: &[[u32; 2]]) -> Option<Vec<u32>> {
+    let of_user = Quality::new(positions.len(), springs, |point| point);
+    if of_user.is_good() {
+        return None;
+    }
+    if let Some(order) = lattice_order(positions, springs, LATTICE_SHARE) {
+        let quality = Quality::of_order(&order, springs);
+        if quality.stripe_share >= LATTICE_SHARE && quality.is_better_than(&of_user) {
+            return Some(order);
+        }
+    }
+    let order = spatial_order(positions, springs, (0..positions.len() as u32).collect());
+    Quality::of_order(&order, springs).is_better_than(&of_user).then_some(order)
+}
+
+impl Quality {
+    fn is_good(&self) -> bool {
+        self.stripe_share >= GOOD_SHARE && self.bandwidth <= GOOD_BANDWIDTH
+    }
+
+    /// Notably more springs in stripes; or about as many, and at most half the bandwidth.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let gained = self.stripe_share - other.stripe_share;
+        let narrower = self.bandwidth.max(SMALL_BANDWIDTH) <= other.bandwidth / 2;
+        gained >= NOTABLE_SHARE || (gained >= -NOTABLE_SHARE && narrower)
+    }
+}
