@@ -26,8 +26,8 @@ const MOST_AT_SEED: usize = 128;
 /// Points or springs by which a share is estimated.
 const SAMPLE: usize = 1024;
 
-/// Unless one spring of these goes straight on in another, there is no lattice. In the thinnest lattice that could matter,
-/// two by two points long, it is one of three.
+/// There is no lattice unless one spring in so many goes straight on in another. In a bar of two by two points, which has
+/// fewest, it is one of three.
 const FEWEST_GO_ON: usize = 8;
 
 /// The least sine of an angle between axes.
