@@ -26,8 +26,8 @@ const GOOD_SHARE: f64 = 0.9;
 /// Up to this bandwidth what the step has at hand stays in a core's own cache.
 const GOOD_BANDWIDTH: u32 = 32_768;
 
-/// The order of lattices is taken from this share of springs in stripes; below it the slabs' smaller bandwidth is worth more.
-const LATTICE_SHARE: f64 = 0.6;
+/// Lattices are looked for as long as this share of the springs may lie in some; with less, slabs do as well.
+const LATTICE_SHARE: f64 = 0.5;
 
 /// A difference of shares that tells in the time of a step.
 const NOTABLE_SHARE: f64 = 0.1;
@@ -40,18 +40,23 @@ const SMALL_BANDWIDTH: u32 = 1024;
 ///
 /// `positions` are those of the model as built, m; the ends of `springs` are indices of positions.
 pub(crate) fn hidden_order(positions: &[Vec3], springs: &[[u32; 2]]) -> Option<Vec<u32>> {
-    let of_user = Quality::new(positions.len(), springs, |point| point);
-    if of_user.is_good() {
-        return None;
-    }
-    if let Some(order) = lattice_order(positions, springs, LATTICE_SHARE) {
-        let quality = Quality::of_order(&order, springs);
-        if quality.stripe_share >= LATTICE_SHARE && quality.is_better_than(&of_user) {
-            return Some(order);
+    let lattices = || lattice_order(positions, springs, LATTICE_SHARE);
+    let slabs = || Some(spatial_order(positions, springs, (0..positions.len() as u32).collect()));
+    let candidates: [&dyn Fn() -> Option<Vec<u32>>; 2] = [&lattices, &slabs];
+
+    let mut best = (Quality::new(positions.len(), springs, |point| point), None);
+    for candidate in candidates {
+        if best.0.is_good() {
+            break;
+        }
+        if let Some(order) = candidate() {
+            let quality = Quality::of_order(&order, springs);
+            if quality.is_better_than(&best.0) {
+                best = (quality, Some(order));
+            }
         }
     }
-    let order = spatial_order(positions, springs, (0..positions.len() as u32).collect());
-    Quality::of_order(&order, springs).is_better_than(&of_user).then_some(order)
+    best.1
 }
 
 impl Quality {

@@ -171,6 +171,15 @@ fn a_lattice_with_a_window_is_found_again() {
 }
 
 #[test]
+fn a_block_with_bubbles_is_found_again() {
+    let mut dice = Dice(11);
+    let bubbles: Vec<bool> = (0..25 * 24 * 23).map(|_| dice.below(25) == 0).collect();
+    let block = Network::lattice([25, 24, 23]).without(|point| bubbles[point]);
+    assert!((0.3..0.8).contains(&block.quality().stripe_share), "not what is meant: {:?}", block.quality());
+    assert_found_again("bubbles", &block);
+}
+
+#[test]
 fn bodies_turned_each_its_own_way_and_glued_are_found_again() {
     let turned = |degrees| rotation(DVec3::Y, degrees);
     let pile = Network::placed([12, 12, 12], turned(4.0), DVec3::ZERO)
