@@ -31,9 +31,10 @@ pub fn doc() -> Outcome {
     run(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
-/// Those tests whose results could depend on how the compiler optimises: the golden hashes and the stored pictures.
-/// All of them would take many minutes to link.
+/// Those tests whose results could depend on how the compiler optimises: the kernel's, as only then are its loops vectors,
+/// the golden hashes and the stored pictures. All of them would take many minutes to link.
 pub fn release_tests() -> Outcome {
+    run(&mut cargo(&["test", "--locked", "--release", "-p", "sprung", "--lib", "kernel::"]))?;
     run(&mut cargo(&[
         "test",
         "--locked",

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetupCreateNew, wgpu};
 use egui::{IconData, ViewportBuilder};
 use sprung::scene::Scene;
-use sprung::{Code, Error, Result};
+use sprung::{Code, Error, Inline, Result, Workers};
 use sprung_driver::{Driver, Handle, Source};
 
 use crate::app::App;
@@ -26,7 +26,7 @@ const SIZE: [f32; 2] = [1280.0, 820.0];
 const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
 
 /// What the window begins with.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone)]
 pub struct Options {
     /// The scene; the last one if none is given, and the jelly at the very first start.
     pub source: Option<Source>,
@@ -34,12 +34,20 @@ pub struct Options {
     pub path: Option<PathBuf>,
     /// Scenes that need more memory than this are refused, bytes. `None`: no limit.
     pub memory_limit: Option<u64>,
+    /// Threads for the steps, besides the one that takes them.
+    pub workers: Arc<dyn Workers>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { source: None, path: None, memory_limit: None, workers: Arc::new(Inline) }
+    }
 }
 
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// [`Code::Unsupported`] if there is no display or no graphics driver; what building the scene says, if it cannot be.
+/// [`Code::NoWindow`] if there is no display or no graphics driver, [`Code::Unsupported`] if the window fails in another way; what building the scene says, if it cannot be.
 pub fn run(options: Options) -> Result<()> {
     let viewport = ViewportBuilder::default()
         .with_app_id(APP_ID)
@@ -119,9 +127,10 @@ fn rank(adapter: &wgpu::AdapterInfo) -> u32 {
 
 fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App> {
     let settings = Settings::load(context.storage);
-    let (source, origin, refused) = first_source(options.source, options.path.as_deref(), &settings)?;
+    let Options { source, path, memory_limit, workers } = options;
+    let (source, origin, refused) = first_source(source, path.as_deref(), &settings)?;
     let repaint = context.egui_ctx.clone();
-    let limits = sprung_driver::Options { memory_limit: options.memory_limit, ..Default::default() };
+    let limits = sprung_driver::Options { memory_limit, workers, ..Default::default() };
     let driver = Driver::with(source, limits)?;
     let driver = Handle::thread(driver, Box::new(move || repaint.request_repaint()))?;
     let mut app = App::new(driver, context);
@@ -167,21 +176,17 @@ fn explain(error: eframe::Error) -> Error {
 fn unsupported(reason: &str) -> Error {
     let has = |words: &[&str]| words.iter().any(|word| reason.contains(word));
     if has(&["WAYLAND_DISPLAY", "DISPLAY", "XOpenDisplay", "open connection to X"]) {
-        return Error::new(Code::Unsupported, "there is no display to open a window on")
+        return Error::new(Code::NoWindow, "there is no display to open a window on")
             .with_fix("start it in a desktop session, or use `sprung run`, which needs none");
     }
     if has(&["libX", "libxkb", "libwayland", "libxcb", ".so"]) {
-        return Error::new(
-            Code::Unsupported,
-            format!("a library for windows is missing: {}", one_line(reason)),
-        )
-        .with_fix("install libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libwayland-client0");
+        return Error::new(Code::NoWindow, format!("a library for windows is missing: {}", one_line(reason)))
+            .with_fix("install libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libwayland-client0");
     }
     if has(&["adapter", "Adapter", "surface", "Surface", "device", "Device", "backend"]) {
-        return Error::new(Code::Unsupported, "there is no graphics driver that can draw the window")
-            .with_fix(
-                "install mesa-vulkan-drivers or the driver of your graphics card, or use `sprung run`",
-            );
+        return Error::new(Code::NoWindow, "there is no graphics driver that can draw the window").with_fix(
+            "install mesa-vulkan-drivers or the driver of your graphics card, or use `sprung run`",
+        );
     }
     Error::new(Code::Unsupported, format!("cannot open a window: {}", one_line(reason)))
 }
@@ -238,7 +243,8 @@ mod tests {
         ] {
             let error = unsupported(reason);
             let text = error.to_string();
-            assert_eq!(error.code(), Code::Unsupported);
+            let can_be_none = words != "cannot open a window: something else";
+            assert_eq!(error.code(), if can_be_none { Code::NoWindow } else { Code::Unsupported });
             assert!(text.contains(words) && !text.contains('\n'), "{text}");
         }
     }

@@ -125,9 +125,9 @@ pub struct RunArgs {
     /// Width and height of pictures in pixels, such as 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// Worker threads; the result is the same for any number
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024), default_value_t = 1)]
-    pub threads: usize,
+    /// Worker threads, the most that are used; the result is the same for any number [default: one for each processor]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
     /// No progress bar and no summary
     #[arg(short, long)]
     pub quiet: bool,
@@ -138,9 +138,9 @@ pub struct RunArgs {
 pub struct BenchArgs {
     /// Built-in scenes or scene files [default: the four scenes of the assignment and those for measuring speed]
     pub scenes: Vec<String>,
-    /// Worker threads
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024), default_value_t = 1)]
-    pub threads: usize,
+    /// Worker threads, the most that are used [default: one for each processor]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
     /// Print one JSON object per scene, each on a line of its own
     #[arg(long)]
     pub json: bool,

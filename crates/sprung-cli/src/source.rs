@@ -46,7 +46,7 @@ fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
 }
 
 /// The simulation of a scene, without a history, after asking whether there is memory for it.
-pub fn simulation(scene: &Scene, threads: usize) -> Result<Simulation> {
+pub fn simulation(scene: &Scene, threads: Option<usize>) -> Result<Simulation> {
     memory::check(scene.estimated_bytes(), "the scene")?;
     let mut simulation = scene.simulation()?;
     simulation.keep_history(0);
@@ -54,8 +54,9 @@ pub fn simulation(scene: &Scene, threads: usize) -> Result<Simulation> {
     Ok(simulation)
 }
 
-/// Worker threads to lend to the engine.
-pub fn workers(threads: usize) -> Result<Arc<dyn Workers>> {
+/// Worker threads to lend to the engine: so many, or one for each processor.
+pub fn workers(threads: Option<usize>) -> Result<Arc<dyn Workers>> {
+    let threads = threads.unwrap_or_else(processors);
     if threads == 1 {
         return Ok(Arc::new(Inline));
     }
@@ -63,6 +64,11 @@ pub fn workers(threads: usize) -> Result<Arc<dyn Workers>> {
     let pool = pool
         .map_err(|error| Error::new(Code::Unsupported, format!("cannot start {threads} threads: {error}")))?;
     Ok(Arc::new(pool))
+}
+
+/// Processors that this program may use.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 #[cfg(test)]

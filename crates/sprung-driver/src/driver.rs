@@ -298,7 +298,7 @@ impl Driver {
 
     /// The run that is compared with comes along.
     fn follow(&mut self, supervisor: &mut dyn Supervisor) {
-        let time = self.run.simulation.state().time;
+        let time = self.run.simulation.now().1;
         if let Some(ghost) = self.run.ghost.as_mut().filter(|ghost| self.compares && !ghost.is_at(time)) {
             self.last = None;
             ghost.follow(time, &mut || supervisor.may_go_on());
@@ -306,7 +306,7 @@ impl Driver {
     }
 
     fn ghost_is_here(&self) -> bool {
-        let time = self.run.simulation.state().time;
+        let time = self.run.simulation.now().1;
         self.run.ghost.as_ref().is_none_or(|ghost| ghost.is_at(time))
     }
 

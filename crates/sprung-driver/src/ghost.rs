@@ -33,7 +33,7 @@ impl Ghost {
 
     /// Whether it is where it belongs at this time, s.
     pub fn is_at(&self, time: f64) -> bool {
-        self.is_lost || self.simulation.state().step == self.target(time)
+        self.is_lost || self.simulation.now().0 == self.target(time)
     }
 
     /// Goes on, or back, to this time (s) as far as it may.

@@ -92,7 +92,7 @@ impl Driver {
     pub(crate) fn rewind_and_go_on(&mut self, seconds: f64) -> Result<()> {
         self.release()?;
         let seconds = if seconds > 0.0 { seconds } else { 0.0 };
-        let (from, now) = (self.run.step_now(), self.run.simulation.state().time);
+        let (from, now) = (self.run.step_now(), self.run.simulation.now().1);
         let to = self.run.recorded.step_at(now - seconds).min(from);
         let params = Box::new(without_hands(self.run.params()));
         self.clear_trouble();

@@ -43,7 +43,7 @@ impl Run {
         simulation.keep_ledger(ledger);
         let mut run = Self {
             recorded: Recorded::new(simulation.state()),
-            samples: Samples::new(simulation.state().step, springs),
+            samples: Samples::new(simulation.now().0, springs),
             watched: Arc::default(),
             ghost: None,
             keeps_ghost,
@@ -58,7 +58,7 @@ impl Run {
     }
 
     pub fn step_now(&self) -> u64 {
-        self.simulation.state().step
+        self.simulation.now().0
     }
 
     pub fn params(&self) -> &Params {
@@ -90,7 +90,7 @@ impl Run {
         let params = self.shared_params().clone();
         match self.simulation.step(dt) {
             Ok(()) => {
-                self.recorded.arrived(self.simulation.state(), dt);
+                self.recorded.arrived(self.simulation.now(), dt);
                 self.sample();
                 Ok(())
             }
@@ -199,7 +199,7 @@ impl Run {
         let params = without_hands(self.params());
         self.simulation.reset();
         if let Some(ghost) = &mut self.ghost {
-            ghost.parted = (self.simulation.state().step, self.simulation.state().time);
+            ghost.parted = self.simulation.now();
         }
         self.recorded = Recorded::new(self.simulation.state());
         self.samples = Samples::new(self.step_now(), self.simulation.model().spring_count());
@@ -277,7 +277,7 @@ impl Run {
 
     fn keep_ghost(&mut self) {
         if self.keeps_ghost {
-            let here = (self.simulation.state().step, self.simulation.state().time);
+            let here = self.simulation.now();
             self.ghost = Some(Ghost::new(self.simulation.clone(), self.recorded.clone(), here));
         }
     }
@@ -305,11 +305,11 @@ pub(crate) fn go_towards(
     target: u64,
     may_go_on: &mut dyn FnMut() -> bool,
 ) -> Result<bool> {
-    while simulation.state().step != target {
+    while simulation.now().0 != target {
         if !may_go_on() {
             return Ok(false);
         }
-        let here = simulation.state().step;
+        let here = simulation.now().0;
         let checkpoint = simulation.checkpoint_before(target);
         let next = if (checkpoint..target).contains(&here) { here + 1 } else { checkpoint };
         simulation.rewind_to(next)?;

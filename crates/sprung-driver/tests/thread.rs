@@ -102,6 +102,9 @@ fn dropping_the_handle_ends_it_whatever_it_does() {
     }
 }
 
+/// A scene large enough for the engine to call on other threads.
+const LARGE: &str = "cloth512";
+
 /// Threads that stand still while the gate is shut.
 struct Gated {
     gate: Mutex<()>,
@@ -127,7 +130,7 @@ fn dropping_the_handle_does_not_wait_for_what_cannot_be_broken_off() {
     let (has_come, coming) = channel();
     let workers = Arc::new(Gated { gate: Mutex::new(()), has_come: Mutex::new(has_come) });
     let options = Options { workers: workers.clone(), ..Options::default() };
-    let (mut handle, woken) = start(Driver::with(source("jelly"), options).expect("it opens"));
+    let (mut handle, woken) = start(Driver::with(source(LARGE), options).expect("it opens"));
     let shut = workers.gate.lock().expect("nobody dies");
     handle.send(Command::Step);
     coming.recv_timeout(HANG).expect("it steps");
@@ -188,7 +191,7 @@ impl Workers for Dying {
 #[test]
 fn a_panic_becomes_a_report_and_not_a_hang() {
     let options = Options { workers: Arc::new(Dying(AtomicUsize::new(0))), ..Options::default() };
-    let (mut handle, woken) = start(Driver::with(source("jelly"), options).expect("it opens"));
+    let (mut handle, woken) = start(Driver::with(source(LARGE), options).expect("it opens"));
     handle.send(Command::Play(true));
     let report = wait_for(&mut handle, &woken, "the panic", |report| report.trouble.is_some());
     let Some(Trouble::Refused(error)) = &report.trouble else { panic!("{:?}", report.trouble) };

@@ -121,9 +121,9 @@ impl Ledger {
         }
     }
 
-    /// After it: every force's work, booked. `Drives` books what outside forces put in, and has found how much of that a
+    /// After it: the sums with every force's work booked. `Drives` books what outside forces put in, and has found how much of that a
     /// carrying hand stored in springs, J.
-    pub fn end(&mut self, model: &Model, params: &Params, state: &mut State, stored_by_hand: f64) {
+    pub fn end(&mut self, model: &Model, params: &Params, state: &State, stored_by_hand: f64) -> LedgerSums {
         let half_dt = 0.5 * f64::from(params.dt as f32);
         for (point, velocity) in self.velocity.iter_mut().enumerate() {
             *velocity = (*velocity + state.velocity64(point)) * half_dt;
@@ -147,7 +147,7 @@ impl Ledger {
                 Account::WorkIn | Account::None => {}
             }
         }
-        state.ledger = sums;
+        sums
     }
 }
 
@@ -161,22 +161,27 @@ pub(crate) struct Drives {
 }
 
 impl Drives {
-    pub fn begin(&mut self, model: &Model, params: &Params, state: &State) {
+    /// Before a step. `motion` gives a point's position and velocity.
+    pub fn begin(&mut self, model: &Model, params: &Params, motion: impl Fn(usize) -> [DVec3; 2]) {
         self.driven.clear();
-        let forces = force::external::forces(params).chain(force::grab::forces(params, state));
-        let free = forces.filter(|&(point, _)| !params.is_fixed(point));
-        self.driven.extend(free.map(|(point, force)| (point, force, state.velocity64(point))));
-        self.hand.begin(model, params, state);
+        let external = force::external::forces(params);
+        let grabs = params.grabs.iter().map(|grab| {
+            let [position, velocity] = motion(grab.point);
+            (grab.point, force::grab::force(grab, position, velocity))
+        });
+        let free = external.chain(grabs).filter(|&(point, _)| !params.is_fixed(point));
+        self.driven.extend(free.map(|(point, force)| (point, force, motion(point)[1])));
+        self.hand.begin(model, params, motion);
     }
 
-    /// Books the works; gives the part of them that hands stored in springs, J.
-    pub fn end(&self, model: &Model, params: &Params, state: &mut State) -> f64 {
+    /// After it: the work that was put in, J, and how much of that hands stored in springs.
+    pub fn end(&self, model: &Model, params: &Params, motion: impl Fn(usize) -> [DVec3; 2]) -> (f64, f64) {
         let half_dt = 0.5 * f64::from(params.dt as f32);
+        let mut work_in = 0.0;
         for &(point, force, velocity) in &self.driven {
-            state.ledger.work_in += force.dot(velocity + state.velocity64(point)) * half_dt;
+            work_in += force.dot(velocity + motion(point)[1]) * half_dt;
         }
-        let (stored, braked) = self.hand.work(model, params, state);
-        state.ledger.work_in += stored + braked;
-        stored
+        let (stored, braked) = self.hand.work(model, params, motion);
+        (work_in + stored + braked, stored)
     }
 }

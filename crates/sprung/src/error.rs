@@ -32,6 +32,8 @@ pub enum Code {
     Unwritable,
     /// Something this build or machine cannot do.
     Unsupported,
+    /// There can be no window: there is no display, or no graphics driver or library for it.
+    NoWindow,
     /// A settling scene did not come to rest.
     NotSettled,
     /// The simulation blew up; [`Error::blow_up`] tells the rest.

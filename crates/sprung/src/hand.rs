@@ -16,7 +16,6 @@ use glam::DVec3;
 use crate::force::spring::{pull_and_brake, stored};
 use crate::model::Model;
 use crate::params::Params;
-use crate::state::State;
 
 /// The springs at carried points, as they were at the beginning of a step.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +36,7 @@ struct CarriedSpring {
 
 impl Hand {
     /// Before a step. Takes no memory once it has had that many springs.
-    pub fn begin(&mut self, model: &Model, params: &Params, state: &State) {
+    pub fn begin(&mut self, model: &Model, params: &Params, motion: impl Fn(usize) -> [DVec3; 2]) {
         self.springs.clear();
         for &point in params.carried.keys() {
             for &spring in model.springs_at(point) {
@@ -47,8 +46,8 @@ impl Hand {
                 if carried[0] && point == j {
                     continue; // counted at its other end
                 }
-                let position = [i, j].map(|end| state.position64(end));
-                let velocity = [i, j].map(|end| state.velocity64(end));
+                let ends = [i, j].map(&motion);
+                let (position, velocity) = (ends.map(|[x, _]| x), ends.map(|[_, v]| v));
                 let (axis, apart) = (position[0] - position[1], velocity[0] - velocity[1]);
                 let (_, brake) = pull_and_brake(params, spring, axis, apart);
                 let [at_i, at_j] =
@@ -59,11 +58,11 @@ impl Hand {
     }
 
     /// After it: what the hand stored in springs, and what it gave against dampers, J.
-    pub fn work(&self, model: &Model, params: &Params, state: &State) -> (f64, f64) {
+    pub fn work(&self, model: &Model, params: &Params, motion: impl Fn(usize) -> [DVec3; 2]) -> (f64, f64) {
         let dt = f64::from(params.dt as f32);
         let (mut in_springs, mut in_dampers) = (0.0, 0.0);
         for &CarriedSpring { spring, carried, position: before, brake_power } in &self.springs {
-            let after = model.springs[spring].map(|end| state.position64(end as usize));
+            let after = model.springs[spring].map(|end| motion(end as usize)[0]);
             let energy = |[i, j]: [DVec3; 2]| stored(params, spring, i - j);
             let hand_moved = [0, 1].map(|end| if carried[end] { after[end] } else { before[end] });
             let rest_moved = [0, 1].map(|end| if carried[end] { before[end] } else { after[end] });

@@ -196,6 +196,28 @@ impl History {
         true
     }
 
+    /// A step was reached at which no checkpoint is due.
+    pub fn reached(&mut self, step: u64) {
+        self.newest = step;
+    }
+
+    /// Whether there is to be a checkpoint at `step`.
+    pub fn is_due(&self, step: u64) -> bool {
+        let state = 4 * size_of::<glam::Vec3>() * self.first.state.position.len();
+        state <= self.budget && (step - self.first.state.step).is_multiple_of(GAP)
+    }
+
+    /// How many steps from `step` there are to the next checkpoint.
+    pub fn steps_to_checkpoint(&self, step: u64) -> u64 {
+        GAP - (step - self.first.state.step) % GAP
+    }
+
+    /// The next step after `step` for which an event is logged.
+    pub fn next_event(&self, step: u64) -> Option<u64> {
+        let next = self.log.partition_point(|(at, _)| *at <= step);
+        self.log.get(next).map(|(at, _)| *at)
+    }
+
     /// The checkpoint without which the gap left behind is smallest in proportion to how long ago it began, seen from
     /// step `next`.
     fn most_dispensable(&self, next: u64) -> Option<usize> {

@@ -5,6 +5,7 @@
 
 pub mod build;
 pub mod contact;
+mod current;
 pub mod energy;
 mod error;
 pub mod force;
@@ -31,6 +32,7 @@ pub use energy::Energy;
 pub use error::{Code, Error, Place, Result};
 pub use glam::{DVec3, Vec3};
 pub use history::Event;
+pub use kernel::Level;
 pub use model::{Body, Joint, Model, Surface, SurfaceKind};
 pub use params::{Change, Grab, Params};
 pub use probe::{PointReading, SpringReading};

@@ -38,15 +38,6 @@ pub(crate) fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos)
 }
 
-/// a + b in float32 and what the rounding dropped (Knuth's TwoSum): the two parts add up to a + b exactly.
-#[inline(always)]
-pub(crate) fn two_sum(a: f32, b: f32) -> (f32, f32) {
-    let sum = a + b;
-    let b_virtual = sum - a;
-    let a_virtual = sum - b_virtual;
-    (sum, (a - a_virtual) + (b - b_virtual))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,11 +48,5 @@ mod tests {
         let r = rotation(axis, 120.0);
         assert!((r * axis - axis).length() < 1e-15);
         assert!((r * DVec3::X - DVec3::Y).length() < 1e-15);
-    }
-
-    #[test]
-    fn two_sum_is_exact() {
-        let (sum, rest) = two_sum(1.0e8, 1.25);
-        assert_eq!(f64::from(sum) + f64::from(rest), 1.0e8 + 1.25);
     }
 }

@@ -1,7 +1,7 @@
 //! The model: what is joined to what. Immutable once built, shared by every run that uses it.
 
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// A named part of a model: a range of its points, and of the springs among them.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,11 +51,13 @@ pub struct Surface {
 pub struct Model {
     pub(crate) point_count: usize,
     pub(crate) springs: Vec<[u32; 2]>,
-    pub(crate) spring_rest_length: Vec<f32>,
+    /// Shared with the parameters until they change it.
+    pub(crate) spring_rest_length: Arc<Vec<f32>>,
     pub(crate) bodies: Vec<Body>,
     pub(crate) joints: Vec<Joint>,
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) springs_at: SpringsAt,
+    pub(crate) hidden_order: HiddenOrder,
 }
 
 impl Model {
@@ -142,6 +144,25 @@ impl Model {
         format!("spring {number} of {owner} ({} and {})", self.point_name(i), self.point_name(j))
     }
 
+    /// Where a point is in the hidden order, in which a step goes through the points.
+    #[inline(always)]
+    pub(crate) fn place_of(&self, point: usize) -> usize {
+        self.hidden_order.place_of.get(point).map_or(point, |&place| place as usize)
+    }
+
+    /// The point at a place of the hidden order.
+    #[inline(always)]
+    pub(crate) fn point_at(&self, place: usize) -> usize {
+        self.hidden_order.point_at.get(place).map_or(place, |&point| point as usize)
+    }
+
+    /// The places of a spring's ends in the hidden order, the smaller one first.
+    #[inline(always)]
+    pub(crate) fn places(&self, spring: u32) -> [u32; 2] {
+        let [a, b] = self.springs[spring as usize].map(|point| self.place_of(point as usize) as u32);
+        [a.min(b), a.max(b)]
+    }
+
     fn body_of(&self, point: usize) -> Option<&Body> {
         self.bodies.iter().find(|body| body.points.contains(&point))
     }
@@ -151,6 +172,26 @@ impl Model {
         let body = self.bodies.iter().find(|body| body.springs.contains(&spring)).map(|body| &body.name);
         let joint = self.joints.iter().find(|joint| joint.springs.contains(&spring)).map(|joint| &joint.name);
         body.or(joint).map_or("", |name| name)
+    }
+}
+
+/// The order in which a step goes through the points, chosen when the model is built so that points that are joined lie
+/// near each other. Both lists are empty where it is the user's own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct HiddenOrder {
+    place_of: Vec<u32>,
+    point_at: Vec<u32>,
+}
+
+impl HiddenOrder {
+    /// From the list of points by place; `None` is the user's own order.
+    pub fn new(point_at: Option<Vec<u32>>) -> Self {
+        let point_at = point_at.unwrap_or_default();
+        let mut place_of = vec![0; point_at.len()];
+        for (place, &point) in point_at.iter().enumerate() {
+            place_of[point as usize] = place as u32;
+        }
+        Self { place_of, point_at }
     }
 }
 

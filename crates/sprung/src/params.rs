@@ -134,11 +134,15 @@ impl Params {
         an_end_is_free && !self.spring_cut[spring]
     }
 
-    /// Whether masses, pins and springs are the very arrays of `other`, and not merely equal ones.
-    pub(crate) fn shares_arrays_with(&self, other: &Self) -> bool {
+    /// Whether masses and pins are the very arrays of `other`, and not merely equal ones.
+    pub(crate) fn shares_masses_with(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.point_mass, &other.point_mass)
             && Arc::ptr_eq(&self.point_pinned, &other.point_pinned)
-            && Arc::ptr_eq(&self.spring_stiffness, &other.spring_stiffness)
+    }
+
+    /// Whether the springs' laws and cuts are the very arrays of `other`.
+    pub(crate) fn shares_springs_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.spring_stiffness, &other.spring_stiffness)
             && Arc::ptr_eq(&self.spring_damping, &other.spring_damping)
             && Arc::ptr_eq(&self.spring_rest_length, &other.spring_rest_length)
             && Arc::ptr_eq(&self.spring_cut, &other.spring_cut)
@@ -175,12 +179,14 @@ impl Params {
         check_len("spring_damping", self.spring_damping.len(), springs)?;
         check_len("spring_rest_length", self.spring_rest_length.len(), springs)?;
         check_len("spring_cut", self.spring_cut.len(), springs)?;
-        check_all("point_mass", &self.point_mass, check_mass)?;
-        check_all("spring_stiffness", &self.spring_stiffness, |value| check_in("", value, &STIFFNESS_RANGE))?;
-        check_all("spring_damping", &self.spring_damping, |value| check_in("", value, &DAMPING_RANGE))?;
-        check_all("spring_rest_length", &self.spring_rest_length, |value| {
-            check_in("", value, &LENGTH_RANGE)
-        })?;
+        check_all("point_mass", &self.point_mass, &MASS_RANGE, check_mass)?;
+        for (field, values, range) in [
+            ("spring_stiffness", &self.spring_stiffness, &STIFFNESS_RANGE),
+            ("spring_damping", &self.spring_damping, &DAMPING_RANGE),
+            ("spring_rest_length", &self.spring_rest_length, &LENGTH_RANGE),
+        ] {
+            check_all(field, values, range, |value| check_in("", value, range))?;
+        }
         for (&point, &force) in &self.external_forces {
             check_index("external_forces", point, points)?;
             check_vector("external_forces", force)?;
@@ -315,6 +321,18 @@ pub(crate) fn check_vector(field: &str, vector: Vec3) -> Result<()> {
     vector.to_array().iter().try_for_each(|&value| check_in(field, value, &MAGNITUDE_RANGE))
 }
 
+/// As [`check_vector`] for each, with its number.
+pub(crate) fn check_vectors(field: &str, vectors: &[Vec3]) -> Result<()> {
+    // All at once first, in vector code: that one of them is bad is rare.
+    let numbers: &[f32] = bytemuck::cast_slice(vectors);
+    if numbers.iter().fold(true, |good, number| good & MAGNITUDE_RANGE.contains(number)) {
+        return Ok(());
+    }
+    vectors.iter().enumerate().try_for_each(|(index, &vector)| {
+        check_vector("", vector).map_err(|error| error.at_field(format!("{field}[{index}]")))
+    })
+}
+
 fn check_len(field: &str, found: usize, expected: usize) -> Result<()> {
     if found == expected {
         return Ok(());
@@ -336,7 +354,17 @@ fn check_range(field: &str, range: &Range<usize>, count: usize) -> Result<()> {
     Err(Error::new(Code::OutOfRange, sentence).at_field(field))
 }
 
-fn check_all(field: &str, values: &[f32], check: impl Fn(f32) -> Result<()>) -> Result<()> {
+/// Every value is allowed by `check`, which allows all values of `usual`.
+fn check_all(
+    field: &str,
+    values: &[f32],
+    usual: &RangeInclusive<f32>,
+    check: impl Fn(f32) -> Result<()>,
+) -> Result<()> {
+    // All at once first, in vector code: that one of them is unusual is rare.
+    if values.iter().fold(true, |good, value| good & usual.contains(value)) {
+        return Ok(());
+    }
     values.iter().enumerate().try_for_each(|(index, &value)| {
         check(value).map_err(|error| error.at_field(format!("{field}[{index}]")))
     })

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::current::Current;
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
 use crate::history::{self, Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
 use crate::math::without_negligible;
 use crate::model::Model;
-use crate::params::{Change, Params, check_vector};
+use crate::params::{Change, Params, check_vectors};
 use crate::settle::{SettleOptions, Settled};
 use crate::solver::SymplecticEuler;
 use crate::state::{Snapshot, State};
@@ -46,10 +47,9 @@ const STEPS_TO_PROGRESS: u64 = 64;
 pub struct Simulation {
     model: Arc<Model>,
     params: Arc<Params>,
-    state: State,
-    solver: SymplecticEuler,
-    /// What the solver has packed is behind the parameters.
-    solver_is_stale: bool,
+    current: Current,
+    /// The parameters that the solver has packed, where they are not the current ones.
+    packed: Option<Arc<Params>>,
     workers: Arc<dyn Workers>,
     watch: Watch,
     /// Where [`reset`](Self::reset) goes.
@@ -88,7 +88,7 @@ impl Simulation {
         hold_fixed_points(&params, &mut state);
         let start = Energy::of(&model, &params, &state).total();
         state.ledger = LedgerSums { start, ..LedgerSums::default() };
-        Self::resume(model, params, state)
+        Ok(Self::begin(model, params, state))
     }
 
     /// Goes on with a run from the parameters and the state that another simulation had: bit for bit as it would have gone
@@ -101,16 +101,21 @@ impl Simulation {
         params.validate(&model)?;
         check_state(&model, &state)?;
         hold_fixed_points(&params, &mut state);
+        Ok(Self::begin(model, params, state))
+    }
+
+    /// Goes on from what has been checked.
+    fn begin(model: Arc<Model>, params: Params, mut state: State) -> Self {
         state.check_clock(params.dt);
         let params = Arc::new(params);
         let start = Arc::new(Checkpoint { state: state.clone(), params: params.clone() });
-        Ok(Self {
-            solver: SymplecticEuler::new(&model, &params),
+        Self {
             workers: Arc::new(Inline),
-            watch: Watch::new(&state, &params),
+            watch: Watch::new(&params),
+            current: Current::new(SymplecticEuler::new(model.clone(), &params), state),
             history: History::new(start.clone(), DEFAULT_HISTORY_BYTES),
             start,
-            solver_is_stale: false,
+            packed: None,
             history_budget: DEFAULT_HISTORY_BYTES,
             drives: Drives::default(),
             ledger: None,
@@ -119,8 +124,7 @@ impl Simulation {
             placed: None,
             model,
             params,
-            state,
-        })
+        }
     }
 
     /// One step of length `dt` (s). A `dt` other than [`Params::dt`] is a [`Change::Dt`] first.
@@ -131,18 +135,34 @@ impl Simulation {
         if dt != self.params.dt {
             self.change(Change::Dt(dt))?;
         }
-        self.history.branch_at(self.state.step);
-        self.advance()?;
-        self.history.arrived(&self.state, &self.params);
+        self.steps(1)
+    }
+
+    /// So many steps of [`Params::dt`]: the same as one after another, and faster, as positions and velocities are put into
+    /// the user's order only when somebody asks for them.
+    ///
+    /// # Errors
+    /// [`Code::BlewUp`] if the run blows up: the last good state is then the current one.
+    pub fn steps(&mut self, count: u64) -> Result<()> {
+        let target = self.current.step() + count;
+        self.history.branch_at(self.current.step());
+        while self.current.step() < target {
+            self.advance(target - self.current.step())?;
+            if self.history.is_due(self.current.step()) {
+                self.history.arrived(self.current.state(), &self.params);
+            } else {
+                self.history.reached(self.current.step());
+            }
+        }
         Ok(())
     }
 
     /// One frame: [`Params::substeps`] steps of [`Params::dt`].
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// As [`steps`](Self::steps).
     pub fn frame(&mut self) -> Result<()> {
-        (0..self.params.substeps).try_for_each(|_| self.step(self.params.dt))
+        self.steps(u64::from(self.params.substeps))
     }
 
     /// Brings the scene to rest by kinetic damping (Cundall 1976): it steps on, sets all velocities to zero whenever the
@@ -163,10 +183,10 @@ impl Simulation {
         options: SettleOptions,
         progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
     ) -> Result<Settled> {
-        let events = self.history.events_at(self.state.step).len();
+        let events = self.history.events_at(self.current.step()).len();
         let settled = self.settle_unlogged(options, progress, events)?;
-        self.history.branch_at(self.state.step);
-        self.history.record(self.state.step, Event::Settle(options));
+        self.history.branch_at(self.current.step());
+        self.history.record(self.current.step(), Event::Settle(options));
         Ok(settled)
     }
 
@@ -177,8 +197,8 @@ impl Simulation {
     /// [`Code::OutOfRange`], and then nothing has changed.
     pub fn change(&mut self, change: Change) -> Result<()> {
         self.change_unlogged(&change)?;
-        self.history.branch_at(self.state.step);
-        self.history.record(self.state.step, Event::Change(change));
+        self.history.branch_at(self.current.step());
+        self.history.record(self.current.step(), Event::Change(change));
         Ok(())
     }
 
@@ -212,13 +232,14 @@ impl Simulation {
             return Err(Error::new(Code::OutOfRange, sentence));
         }
         let checkpoint = self.history.before(step);
-        if !(checkpoint.state.step..=step).contains(&self.state.step) {
+        if !(checkpoint.state.step..=step).contains(&self.current.step()) {
             let Checkpoint { state, params } = Checkpoint::clone(checkpoint);
             self.restore(state, params, 0);
             self.redo_events(0)?;
         }
-        while self.state.step < step {
-            self.advance()?;
+        while self.current.step() < step {
+            let next = self.history.next_event(self.current.step()).map_or(step, |next| next.min(step));
+            self.advance(next - self.current.step())?;
             self.redo_events(0)?;
         }
         Ok(())
@@ -249,22 +270,22 @@ impl Simulation {
 
     /// Positions and velocities now, in the user's order, in a buffer that is used again.
     pub fn snapshot(&mut self) -> &Snapshot {
-        self.snapshot.fill(&self.state);
+        self.snapshot.fill(self.current.state());
         &self.snapshot
     }
 
     /// The total force on each point now, N, in the user's order, as the next step would use it; in a buffer that is used
-    /// again. See [`SymplecticEuler::forces`] for points that are held, and [`PointReading`](crate::PointReading) for
+    /// again. See [`PointReading`](crate::PointReading) for
     /// the parts of a force.
     pub fn forces(&mut self) -> &[Vec3] {
         self.refresh_solver();
-        self.solver.forces(&self.params, &self.state, &*self.workers, &mut self.forces);
+        self.current.solver().forces(&self.params, &mut self.forces);
         &self.forces
     }
 
     /// Where the energy is now, J, and where it went as far as the ledger was on.
     pub fn energy(&self) -> Energy {
-        Energy::of(&self.model, &self.params, &self.state)
+        Energy::of(&self.model, &self.params, self.current.state())
     }
 
     /// Switches the energy ledger on or off. While on, each step also sums every force's work in float64, at several
@@ -279,12 +300,14 @@ impl Simulation {
     /// checkpoints make room for it, down to a quarter of this memory.
     pub fn keep_history(&mut self, bytes: usize) {
         self.history_budget = bytes;
-        let untouched = self.state == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
-        let here = || Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() });
+        let untouched =
+            *self.current.state() == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
+        let here =
+            || Arc::new(Checkpoint { state: self.current.state().clone(), params: self.params.clone() });
         let first = if untouched { self.start.clone() } else { here() };
         self.history = History::new(first, bytes);
         self.placed = None;
-        self.watch.restart(&self.state, &self.params, 0);
+        self.watch.restart(&mut self.current, &self.params, 0);
     }
 
     /// Lends the engine worker threads. However many there are, the bits are the same.
@@ -295,12 +318,12 @@ impl Simulation {
     /// Whether energy has come from nowhere at this very step: it may be about to blow up, and whoever records should
     /// hold this state back until a later one is found good.
     pub fn is_suspect(&self) -> bool {
-        watch::excess(&self.model, &self.params, &self.state).is_some()
+        watch::excess(&self.model, &self.params, self.current.state()).is_some()
     }
 
     /// A fingerprint of positions, velocities and step: see [`State::hash`].
     pub fn state_hash(&self) -> u64 {
-        self.state.hash()
+        self.current.state().hash()
     }
 
     /// What is joined to what.
@@ -313,9 +336,15 @@ impl Simulation {
         &self.params
     }
 
+    /// The step it is at, and the simulated time, s: the same as in [`state`](Self::state), which copies all points first if
+    /// steps were taken since it was last asked for.
+    pub fn now(&self) -> (u64, f64) {
+        self.current.now()
+    }
+
     /// The state as it is now.
     pub fn state(&self) -> &State {
-        &self.state
+        self.current.state()
     }
 
     /// What was done to this run and at which step, oldest first.
@@ -323,29 +352,58 @@ impl Simulation {
         self.history.log()
     }
 
-    /// One step, watched; on a blow-up the last good state is restored and what came after it is forgotten.
-    fn advance(&mut self) -> Result<()> {
+    /// Up to so many steps, watched; on a blow-up the last good state is restored and what came after it is forgotten.
+    fn advance(&mut self, most: u64) -> Result<()> {
         self.refresh_solver();
         self.placed = None;
-        self.drives.begin(&self.model, &self.params, &self.state);
-        if let Some(ledger) = &mut self.ledger {
-            ledger.begin(&self.model, &self.params, &self.state);
-        }
-        let finite = self.solver.step(&self.params, &mut self.state, &*self.workers);
-        let stored_by_hand = self.drives.end(&self.model, &self.params, &mut self.state);
-        if let Some(ledger) = &mut self.ledger {
-            ledger.end(&self.model, &self.params, &mut self.state, stored_by_hand);
-        }
-        match self.watch.look(&self.model, &self.params, &mut self.state, finite) {
+        let count = if self.is_driven() || self.ledger.is_some() {
+            1
+        } else {
+            let step = self.current.step();
+            let suspect = self.current.counters().ledger.suspect_steps > 0;
+            most.min(watch::steps_to_look(step, suspect)).min(self.history.steps_to_checkpoint(step))
+        };
+        let finite = self.advance_unwatched(count);
+        match self.watch.look(&self.model, &self.params, &mut self.current, finite, &*self.workers) {
             None => Ok(()),
             Some(blow_up) => {
-                let ((state, params), events) = (self.watch.good().clone(), self.watch.good_events());
-                self.restore(state, params, events);
-                self.history.branch_at(self.state.step);
+                let (params, events) = (self.watch.good_params().clone(), self.watch.good_events());
+                self.restore(self.current.kept(), params, events);
+                self.history.branch_at(self.current.step());
                 self.redo_events(events)?;
                 Err(Error::from_blow_up(blow_up))
             }
         }
+    }
+
+    /// Whether something acts whose work is booked at every step.
+    fn is_driven(&self) -> bool {
+        let Params { external_forces, grabs, carried, .. } = &*self.params;
+        !(external_forces.is_empty() && grabs.is_empty() && carried.is_empty())
+    }
+
+    /// So many steps, with the ledger and the work of what drives it, which are kept one step at a time.
+    fn advance_unwatched(&mut self, count: u64) -> bool {
+        let is_driven = self.is_driven();
+        if let Some(ledger) = &mut self.ledger {
+            ledger.begin(&self.model, &self.params, self.current.state());
+        }
+        if is_driven {
+            self.drives.begin(&self.model, &self.params, |point| self.current.motion64(point));
+        }
+        let finite = self.current.advance(&self.params, count, &*self.workers);
+        let mut stored_by_hand = 0.0;
+        if is_driven {
+            let (work_in, stored) =
+                self.drives.end(&self.model, &self.params, |point| self.current.motion64(point));
+            self.current.counters().ledger.work_in += work_in;
+            stored_by_hand = stored;
+        }
+        if let Some(ledger) = &mut self.ledger {
+            let sums = ledger.end(&self.model, &self.params, self.current.state(), stored_by_hand);
+            self.current.counters().ledger = sums;
+        }
+        finite
     }
 
     fn change_unlogged(&mut self, change: &Change) -> Result<()> {
@@ -354,31 +412,35 @@ impl Simulation {
         }
         let mut wanted = Params::clone(&self.params);
         wanted.apply(&self.model, change)?;
-        self.solver_is_stale |=
-            !wanted.shares_arrays_with(&self.params) || !wanted.carried.keys().eq(self.params.carried.keys());
         let placed = self.placed.take();
         if moves_energy(change) {
             // A value that is set twice between two steps was set once, from how it was before the first time.
             let first = match placed {
                 Some(Placed::Params(last, first)) if history::replaces(change, &last) => {
-                    Checkpoint { state: self.state, params: self.params } = Checkpoint::clone(&first);
+                    let Checkpoint { state, params } = Checkpoint::clone(&first);
+                    *self.current.state_mut() = state;
+                    self.set_params(params);
                     first
                 }
-                _ => Arc::new(Checkpoint { state: self.state.clone(), params: self.params.clone() }),
+                _ => {
+                    let (state, params) = (self.current.state().clone(), self.params.clone());
+                    Arc::new(Checkpoint { state, params })
+                }
             };
             self.placed = Some(Placed::Params(change.clone(), first));
         }
         let before = moves_energy(change).then(|| self.energy().total());
-        let old = std::mem::replace(&mut self.params, Arc::new(wanted));
+        let old = self.set_params(Arc::new(wanted));
         if self.params.dt != old.dt {
-            self.state.restart_clock();
+            self.current.counters().restart_clock();
         }
         if matches!(change, Change::Mass(..) | Change::Pin(..) | Change::Params(_)) {
-            hold_fixed_points(&self.params, &mut self.state);
+            hold_fixed_points(&self.params, self.current.state_mut());
         }
         if let Some(before) = before {
             // What a change adds to the energy is work put in, not energy from nowhere.
-            self.state.ledger.work_in += self.energy().total() - before;
+            let work_in = self.energy().total() - before;
+            self.current.counters().ledger.work_in += work_in;
         }
         Ok(())
     }
@@ -388,34 +450,36 @@ impl Simulation {
         let old = self.params.clone();
         Arc::make_mut(&mut self.params).apply(&self.model, change)?;
         let earlier = self.placed.take();
-        if let Change::Place(_, position) = change {
-            if let Some(placed) = earlier {
-                placed.take_back(point, &mut self.state);
-            }
-            self.placed = Some(Placed::point(point, &self.state));
-            let before = energy::around(&self.model, &old, &self.state, point);
-            self.state.position[point] = without_negligible(*position);
-            self.state.position_low[point] = Vec3::ZERO;
-            self.state.velocity[point] = Vec3::ZERO;
-            self.state.velocity_low[point] = Vec3::ZERO;
-            hold(&self.params, &mut self.state, point);
-            self.state.ledger.work_in +=
-                energy::around(&self.model, &self.params, &self.state, point) - before;
-        } else {
-            // The hand takes the point's own energy over, or gives it some.
-            let before = energy::around(&self.model, &old, &self.state, point);
-            hold(&self.params, &mut self.state, point);
-            self.solver.refresh_point(&self.params, point);
-            self.state.ledger.work_in +=
-                energy::around(&self.model, &self.params, &self.state, point) - before;
+        let state = self.current.state_mut();
+        if let (Change::Place(..), Some(placed)) = (change, earlier) {
+            placed.take_back(point, state);
         }
+        let before = energy::around(&self.model, &old, state, point);
+        if let Change::Place(_, position) = change {
+            self.placed = Some(Placed::point(point, state));
+            state.position[point] = without_negligible(*position);
+            state.position_low[point] = Vec3::ZERO;
+            state.velocity[point] = Vec3::ZERO;
+            state.velocity_low[point] = Vec3::ZERO;
+        }
+        // The hand takes the point's own energy over, or gives it some.
+        hold(&self.params, state, point);
+        state.ledger.work_in += energy::around(&self.model, &self.params, state, point) - before;
+        self.current.unpacked().refresh_point(&self.params, point);
         Ok(())
+    }
+
+    /// Takes other parameters, and gives the old ones back.
+    fn set_params(&mut self, params: Arc<Params>) -> Arc<Params> {
+        let old = std::mem::replace(&mut self.params, params);
+        self.packed.get_or_insert_with(|| old.clone());
+        old
     }
 
     /// Packs anew what has changed: once before the next step, however many changes there were.
     fn refresh_solver(&mut self) {
-        if std::mem::take(&mut self.solver_is_stale) {
-            self.solver = SymplecticEuler::new(&self.model, &self.params);
+        if let Some(packed) = self.packed.take() {
+            self.current.unpacked().refresh(&packed, &self.params);
         }
     }
 
@@ -426,23 +490,22 @@ impl Simulation {
         progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
         events: usize,
     ) -> Result<Settled> {
-        let before = self.state.clone();
+        let before = self.current.state().clone();
         let settled = self.relax(options, progress);
+        let state = self.current.state_mut();
         if settled.is_err() {
-            self.state = before;
+            *state = before;
             return settled;
         }
         self.placed = None;
-        hold_fixed_points(&self.params, &mut self.state);
+        hold_fixed_points(&self.params, state);
         // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
         let energy_before = Energy::of(&self.model, &self.params, &before).total();
-        self.state.step = before.step;
-        self.state.time = before.time;
-        self.state.clock = before.clock;
-        self.state.ledger = before.ledger;
-        self.state.ledger.suspect_steps = 0;
-        self.state.ledger.work_in += self.energy().total() - energy_before;
-        self.watch.restart(&self.state, &self.params, events + 1);
+        (state.step, state.time, state.clock) = (before.step, before.time, before.clock);
+        state.ledger = before.ledger;
+        state.ledger.suspect_steps = 0;
+        state.ledger.work_in += Energy::of(&self.model, &self.params, state).total() - energy_before;
+        self.watch.restart(&mut self.current, &self.params, events + 1);
         settled
     }
 
@@ -454,24 +517,20 @@ impl Simulation {
         self.refresh_solver();
         let allowed = options.residual_force.unwrap_or_else(|| default_residual(&self.params));
         let mut kinetic_before = 0.0;
-        stop(&mut self.state);
-        let mut residual_force = self.solver.residual_force(&self.params, &self.state, &*self.workers);
+        stop(self.current.state_mut());
+        let mut residual_force = self.current.solver().residual_force(&self.params);
         for steps in 0..=options.max_steps {
             if residual_force <= allowed {
                 return Ok(Settled { steps, residual_force });
             }
-            let finite = self.solver.step(&self.params, &mut self.state, &*self.workers);
-            if !finite {
-                return Err(Error::from_blow_up(self.watch.not_finite(
-                    &self.model,
-                    &self.params,
-                    &self.state,
-                )));
+            if !self.current.advance(&self.params, 1, &*self.workers) {
+                let blow_up = watch::not_finite(&self.model, &self.params, &self.current);
+                return Err(Error::from_blow_up(blow_up));
             }
-            let kinetic = energy::kinetic(&self.params, &self.state);
+            let kinetic = energy::kinetic(&self.params, self.current.state());
             if kinetic < kinetic_before {
-                stop(&mut self.state);
-                residual_force = self.solver.residual_force(&self.params, &self.state, &*self.workers);
+                stop(self.current.state_mut());
+                residual_force = self.current.solver().residual_force(&self.params);
                 kinetic_before = 0.0;
             } else {
                 kinetic_before = kinetic;
@@ -492,17 +551,16 @@ impl Simulation {
     /// Goes to a good state, that after so many of the events logged for its step.
     fn restore(&mut self, state: State, params: Arc<Params>, events: usize) {
         if !Arc::ptr_eq(&params, &self.params) {
-            self.params = params;
-            self.solver_is_stale = true;
+            self.set_params(params);
         }
-        self.state = state;
+        *self.current.state_mut() = state;
         self.placed = None;
-        self.watch.restart(&self.state, &self.params, events);
+        self.watch.restart(&mut self.current, &self.params, events);
     }
 
     /// Does again what the log says was done at the current step, but for the first so many events.
     fn redo_events(&mut self, done: usize) -> Result<()> {
-        for (index, event) in self.history.events_at(self.state.step).into_iter().enumerate().skip(done) {
+        for (index, event) in self.history.events_at(self.current.step()).into_iter().enumerate().skip(done) {
             match event {
                 Event::Change(change) => self.change_unlogged(&change)?,
                 Event::Settle(options) => {
@@ -517,7 +575,7 @@ impl Simulation {
 impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (points, springs) = (self.model.point_count(), self.model.spring_count());
-        write!(f, "Simulation({points} points, {springs} springs, step {})", self.state.step)
+        write!(f, "Simulation({points} points, {springs} springs, step {})", self.current.step())
     }
 }
 
@@ -589,9 +647,7 @@ fn check_state(model: &Model, state: &State) -> Result<()> {
                 format!("has {} entries, and the model has {} points", array.len(), model.point_count());
             return Err(Error::new(Code::Conflict, sentence).at_field(field));
         }
-        for (point, &vector) in array.iter().enumerate() {
-            check_vector("", vector).map_err(|error| error.at_field(format!("{field}[{point}]")))?;
-        }
+        check_vectors(field, array)?;
     }
     Ok(())
 }

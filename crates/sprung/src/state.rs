@@ -1,5 +1,6 @@
 //! The state: all that a step changes.
 
+use bytemuck::zeroed_vec;
 use glam::{DVec3, Vec3};
 
 use crate::energy::LedgerSums;
@@ -32,9 +33,9 @@ impl Clone for State {
     fn clone(&self) -> Self {
         Self {
             position: self.position.clone(),
-            position_low: self.position_low.clone(),
-            velocity: self.velocity.clone(),
-            velocity_low: self.velocity_low.clone(),
+            position_low: sparing_copy(&self.position_low),
+            velocity: sparing_copy(&self.velocity),
+            velocity_low: sparing_copy(&self.velocity_low),
             step: self.step,
             time: self.time,
             ledger: self.ledger,
@@ -56,17 +57,30 @@ impl Clone for State {
 impl State {
     /// A state at time zero.
     pub fn new(position: Vec<Vec3>, velocity: Vec<Vec3>) -> Self {
-        let low = vec![Vec3::ZERO; position.len()];
+        let low = || zeroed_vec(position.len());
         Self {
             step: 0,
             time: 0.0,
+            position_low: low(),
+            velocity_low: low(),
             position,
-            position_low: low.clone(),
             velocity,
-            velocity_low: low,
             ledger: LedgerSums::default(),
             clock: (0, 0.0),
         }
+    }
+
+    /// Its step, time and sums, without a point.
+    pub(crate) fn counters(&self) -> Self {
+        let Self { step, time, ledger, clock, .. } = *self;
+        Self { step, time, ledger, clock, ..Self::new(Vec::new(), Vec::new()) }
+    }
+
+    /// With this step, time and these sums, and so many points at the origin and at rest.
+    pub(crate) fn at_origin(counters: &Self, points: usize) -> Self {
+        let Self { step, time, ledger, clock, .. } = *counters;
+        let zeros = vec![Vec3::ZERO; points];
+        Self { step, time, ledger, clock, ..Self::new(zeros.clone(), zeros) }
     }
 
     /// One step of `dt` (s) has passed.
@@ -111,6 +125,13 @@ impl State {
     pub(crate) fn velocity64(&self, point: usize) -> DVec3 {
         self.velocity[point].as_dvec3() + self.velocity_low[point].as_dvec3()
     }
+}
+
+/// A copy. One of zeros alone, as most of a first state is, takes no memory from the system until something is written to
+/// it.
+fn sparing_copy(vectors: &[Vec3]) -> Vec<Vec3> {
+    let bits: &[u32] = bytemuck::cast_slice(vectors);
+    if bits.iter().all(|&bits| bits == 0) { zeroed_vec(vectors.len()) } else { vectors.to_vec() }
 }
 
 /// A picture of a state that nobody else writes to: the user's order, xyz interleaved.
@@ -212,6 +233,23 @@ impl Fnv {
     fn write(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_has_the_same_bits_zeros_and_their_signs_included() {
+        for low in [0.0, -0.0, 1e-9] {
+            let mut state = State::new(vec![Vec3::ONE; 3], vec![Vec3::ZERO; 3]);
+            state.position_low[2].z = low;
+            let copy = state.clone();
+            assert_eq!(copy, state);
+            assert_eq!(copy.position_low[2].z.to_bits(), low.to_bits());
+            assert_eq!(copy.hash(), state.hash());
         }
     }
 }

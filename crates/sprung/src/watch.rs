@@ -6,15 +6,18 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::energy::Energy;
+use crate::current::Current;
+use crate::energy::{Energy, LedgerSums};
+use crate::kernel::Screen;
 use crate::model::Model;
 use crate::params::{DT_RANGE, Params};
 use crate::stability::{self, Setter};
 use crate::state::State;
 use crate::text::{round_down, significant};
+use crate::workers::Workers;
 
 /// Steps in a row that energy must come from nowhere before a run counts as blown up. Also how often, in steps, a calm run
-/// is looked at: the energy of a large model costs about as much as a step.
+/// is looked at: even a screen of the energies costs a good part of a step.
 const PATIENCE: u64 = 20;
 
 /// The part of a limit on dt that is safe to take, 5 % below it. The limit itself is safe in real numbers; the margin is for
@@ -191,30 +194,32 @@ impl BlowUp {
     }
 }
 
-/// Looks at a run as it goes and keeps its last good state, with the parameters that led there. How long a run has been
+/// Looks at a run as it goes and has its last good state kept, with the parameters that led there. How long a run has been
 /// suspect is part of its state, so that a run that is taken up again is judged as if it had never stopped.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
-    good: (State, Arc<Params>),
+    /// The parameters that led to the good state, which the run's [`Current`] keeps.
+    good_params: Arc<Params>,
     /// How many of the events logged for the good state's step it already holds: settling makes a good state of its own.
     good_events: usize,
 }
 
 impl Watch {
-    pub fn new(state: &State, params: &Arc<Params>) -> Self {
-        Self { good: (state.clone(), params.clone()), good_events: 0 }
+    /// Begins with a state that has just been made, and is kept.
+    pub fn new(params: &Arc<Params>) -> Self {
+        Self { good_params: params.clone(), good_events: 0 }
     }
 
     /// From here on this is the state to go back to, after so many of the events logged for its step.
-    pub fn restart(&mut self, state: &State, params: &Arc<Params>, events: usize) {
-        self.good.0.clone_from(state);
-        self.good.1.clone_from(params);
+    pub fn restart(&mut self, current: &mut Current, params: &Arc<Params>, events: usize) {
+        current.keep();
+        self.good_params.clone_from(params);
         self.good_events = events;
     }
 
-    /// The last state that was looked at and found good.
-    pub fn good(&self) -> &(State, Arc<Params>) {
-        &self.good
+    /// The parameters that led to the last state that was looked at and found good.
+    pub fn good_params(&self) -> &Arc<Params> {
+        &self.good_params
     }
 
     /// How many of the events logged for its step the good state already holds.
@@ -227,36 +232,64 @@ impl Watch {
         &mut self,
         model: &Model,
         params: &Arc<Params>,
-        state: &mut State,
+        current: &mut Current,
         finite: bool,
+        workers: &dyn Workers,
     ) -> Option<BlowUp> {
         if !finite {
-            return Some(self.not_finite(model, params, state));
+            return Some(not_finite(model, params, current));
         }
-        if state.ledger.suspect_steps == 0 && !state.step.is_multiple_of(PATIENCE) {
+        let counters = current.counters();
+        if counters.ledger.suspect_steps == 0 && !counters.step.is_multiple_of(PATIENCE) {
             return None;
         }
-        let Some(excess) = excess(model, params, state) else {
-            state.ledger.suspect_steps = 0;
-            self.restart(state, params, 0);
+        let is_clear = passes(&current.screen(params, workers));
+        let excess = if is_clear { None } else { excess(model, params, current.state()) };
+        let Some(excess) = excess else {
+            current.counters().ledger.suspect_steps = 0;
+            self.restart(current, params, 0);
             return None;
         };
-        state.ledger.suspect_steps += 1;
+        let suspect_steps = &mut current.counters().ledger.suspect_steps;
+        *suspect_steps += 1;
         let cause = Cause::EnergyFromNowhere { excess };
-        (state.ledger.suspect_steps >= PATIENCE)
-            .then(|| BlowUp::new(model, params, cause, state, &self.good.0))
+        (*suspect_steps >= PATIENCE)
+            .then(|| BlowUp::new(model, params, cause, current.state(), &current.kept()))
     }
+}
 
-    /// The report of a state that is not finite.
-    pub fn not_finite(&self, model: &Model, params: &Params, state: &State) -> BlowUp {
-        BlowUp::new(model, params, Cause::NotFinite, state, &self.good.0)
-    }
+/// The report of a current state that is not finite.
+pub(crate) fn not_finite(model: &Model, params: &Params, current: &Current) -> BlowUp {
+    BlowUp::new(model, params, Cause::NotFinite, current.state(), &current.kept())
+}
+
+/// How many steps from `step` until [`Watch::look`] looks at the energy.
+pub(crate) fn steps_to_look(step: u64, suspect: bool) -> u64 {
+    if suspect { 1 } else { PATIENCE - step % PATIENCE }
 }
 
 /// Energy from nowhere, J, where it is more than half of kinetic + elastic.
 pub(crate) fn excess(model: &Model, params: &Params, state: &State) -> Option<f64> {
-    let energy = Energy::of(model, params, state);
-    let excess = energy.total() - state.ledger.start - state.ledger.work_in;
-    let rounding = ROUNDING * (state.ledger.start.abs() + state.ledger.work_in.abs());
-    (excess > 0.5 * (energy.kinetic + energy.elastic) + rounding || excess.is_nan()).then_some(excess)
+    let [excess, allowed] = excess_and_allowed(&Energy::of(model, params, state));
+    (excess > allowed || excess.is_nan()).then_some(excess)
 }
+
+/// Whether it is certain from a screen that [`excess`] finds none. Where it is not, the exact energies decide, so that no
+/// decision depends on the screen.
+fn passes(screen: &Screen) -> bool {
+    let [excess, allowed] = excess_and_allowed(&screen.energy);
+    let LedgerSums { start, work_in, .. } = screen.energy.sums;
+    // The sums of a few numbers below are rounded too; those of the energies are within the bound.
+    let rounding = 16.0 * f64::EPSILON * (start.abs() + work_in.abs());
+    excess + screen.bound + rounding < allowed
+}
+
+/// Energy from nowhere, J, and how much of it is no reason to worry.
+fn excess_and_allowed(energy: &Energy) -> [f64; 2] {
+    let LedgerSums { start, work_in, .. } = energy.sums;
+    let rounding = ROUNDING * (start.abs() + work_in.abs());
+    [energy.total() - start - work_in, 0.5 * (energy.kinetic + energy.elastic) + rounding]
+}
+
+#[cfg(test)]
+mod tests;

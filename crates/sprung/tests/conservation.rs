@@ -51,7 +51,7 @@ fn rounding(model: &Model, params: &Params, state: &State) -> (f64, f64) {
 
 fn check(network: &Network) -> Result<(), TestCaseError> {
     let (model, params, mut state) = network.closed();
-    let mut solver = SymplecticEuler::new(&model, &params);
+    let mut solver = SymplecticEuler::new(model.clone(), &params);
     let start = momenta(&params, &state);
     let (mut allowed_p, mut allowed_l) = (1e-9, 1e-9); // float64 sums
     for step in 0..100 {
@@ -89,7 +89,7 @@ proptest! {
         let zeros = vec![0.0; model.spring_count()];
         params.spring_stiffness = std::sync::Arc::new(zeros);
         params.dt = 1e-4;
-        let mut solver = SymplecticEuler::new(&model, &params);
+        let mut solver = SymplecticEuler::new(model.clone(), &params);
         let kinetic = |state: &State| sprung::Energy::of(&model, &params, state).kinetic;
         for _ in 0..50 {
             let before = kinetic(&state);
@@ -112,7 +112,7 @@ fn the_reports_sign_error_would_lose_momentum_and_the_engine_does_not() {
     let (mut x, mut v, mut made) = ([0.0, 1.5], [0.0, 1.0], 0.0);
     let (model, mut params, mut state) = network.closed();
     params.dt = dt;
-    let mut solver = SymplecticEuler::new(&model, &params);
+    let mut solver = SymplecticEuler::new(model.clone(), &params);
     for _ in 0..20 {
         let (e, w): (f64, f64) = (x[0] - x[1], v[0] - v[1]);
         let spring = -stiffness * (e.abs() - rest) * e.signum();
@@ -141,7 +141,7 @@ fn a_damper_stops_what_it_can_and_nothing_else() {
         low: vec![0.0; 6],
     };
     let (model, params, mut state) = network.closed();
-    let mut solver = SymplecticEuler::new(&model, &params);
+    let mut solver = SymplecticEuler::new(model.clone(), &params);
     (0..30_000).for_each(|_| {
         solver.step(&params, &mut state, &Inline);
     });

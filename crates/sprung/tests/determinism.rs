@@ -4,91 +4,94 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use common::{network, scenes, simulation, steps};
-use proptest::prelude::*;
-use sprung::scene::{BUILTIN, Kind, Scene};
-use sprung::{Change, Simulation, Vec3, Workers};
+use common::{assert_same_bits, simulation};
+use sprung::scene::{BUILTIN, Builtin, Kind, Scene};
+use sprung::{Change, Vec3, Workers};
 
 /// Threads of the standard library, started anew for each step: slow, and enough for a test.
-struct Threads(usize);
+struct Threads {
+    count: usize,
+    /// How often they were called on.
+    called: AtomicUsize,
+}
+
+impl Threads {
+    fn new(count: usize) -> Arc<Self> {
+        Arc::new(Self { count, called: AtomicUsize::new(0) })
+    }
+
+    fn called(&self) -> usize {
+        self.called.load(Ordering::Relaxed)
+    }
+}
 
 impl Workers for Threads {
     fn count(&self) -> usize {
-        self.0
+        self.count
     }
 
     fn run(&self, job: &(dyn Fn(usize) + Sync)) {
+        self.called.fetch_add(1, Ordering::Relaxed);
         std::thread::scope(|scope| {
             // The last worker first, so that finishing in order is nothing to rely on.
-            for worker in (0..self.0).rev() {
+            for worker in (0..self.count).rev() {
                 scope.spawn(move || job(worker));
             }
         });
     }
 }
 
-fn with_threads(mut run: Simulation, threads: usize) -> Simulation {
-    run.set_workers(Arc::new(Threads(threads)));
-    run
+#[test]
+fn small_scenes_leave_other_threads_alone() {
+    for builtin in BUILTIN.iter().filter(|builtin| builtin.kind != Kind::Benchmark) {
+        let mut run =
+            Scene::builtin(builtin.name).and_then(|scene| scene.simulation()).expect("it is built in");
+        let threads = Threads::new(64);
+        run.set_workers(threads.clone());
+        run.steps(20).expect("it is stable");
+        assert_eq!(threads.called(), 0, "{}: calling on threads takes longer than its step", builtin.name);
+    }
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits_on_the_four_scenes() {
-    for scene in scenes::four() {
-        let mut alone = scenes::engine(&scene);
-        steps(&mut alone, 60);
-        for threads in [2, 3, 7, 64] {
-            let mut together = with_threads(scenes::engine(&scene), threads);
-            steps(&mut together, 60);
-            assert_eq!(alone.state(), together.state(), "{} with {threads} threads", scene.name);
-        }
+fn any_number_of_threads_gives_the_same_bits() {
+    let start = common::large_cloth(225);
+    let mut alone = start.clone();
+    alone.steps(25).expect("it is stable");
+    for count in [2, 3, 7, 64] {
+        let (mut together, threads) = (start.clone(), Threads::new(count));
+        together.set_workers(threads.clone());
+        together.steps(25).expect("it is stable");
+        assert_same_bits(alone.state(), together.state(), &format!("{count} threads"));
+        assert!(threads.called() > 0, "{count} threads were not called on");
     }
 }
 
 #[test]
 fn threads_may_change_while_it_runs_and_parameters_too() {
-    let mut alone = scenes::engine(&scenes::cloth());
+    let mut alone = common::large_cloth(225);
     let mut changing = alone.clone();
-    for (threads, change) in [
+    let (points, springs) = (alone.model().point_count(), alone.model().spring_count());
+    let middle = points / 2;
+    for (count, change) in [
         (3, Change::Gravity(Vec3::new(3.0, -9.0, 0.0))),
-        (1, Change::Cut(100..140, true)),
-        (7, Change::Mass(50..60, 2.0)),
-        (2, Change::Stiffness(0..700, 300.0)),
+        (1, Change::Cut(springs / 3..springs / 3 + 900, true)),
+        (7, Change::Mass(points / 3..2 * points / 3, 2.0)),
+        (2, Change::Stiffness(springs / 2..springs, 80.0)),
+        (3, Change::Carry(middle, Some(Vec3::Y))),
+        (3, Change::Place(points - 1, Vec3::new(225.0, 1.0, 226.0))),
+        (2, Change::Pin(middle + 300..points, true)),
     ] {
         alone.change(change.clone()).expect("allowed");
         changing.change(change).expect("allowed");
-        changing.set_workers(Arc::new(Threads(threads)));
-        steps(&mut alone, 25);
-        steps(&mut changing, 25);
-        assert_eq!(alone.state(), changing.state(), "with {threads} threads");
-    }
-}
-
-/// More points than one thread sums at a time, so that blocks begin and end among them.
-#[test]
-fn several_blocks_of_points_give_the_same_bits() {
-    let run = |threads: usize| {
-        let mut run = Scene::builtin("flag").and_then(|scene| scene.simulation()).expect("it is built in");
-        run.keep_history(0);
-        run.set_workers(Arc::new(Threads(threads)));
-        steps(&mut run, 10);
-        run.state_hash()
-    };
-    let alone = run(1);
-    assert!([2, 5].into_iter().all(|threads| run(threads) == alone));
-}
-
-proptest! {
-    #![proptest_config(common::cases(60))]
-
-    #[test]
-    fn any_number_of_threads_gives_the_same_bits_on_random_networks(network in network(), threads in 2usize..5) {
-        let parts = common::driven(&network);
-        let (mut alone, mut together) = (simulation(parts.clone()), with_threads(simulation(parts), threads));
-        steps(&mut alone, 10);
-        steps(&mut together, 10);
-        prop_assert_eq!(alone.state(), together.state());
+        let threads = Threads::new(count);
+        changing.set_workers(threads.clone());
+        alone.steps(9).expect("it is stable");
+        changing.steps(9).expect("it is stable");
+        assert_same_bits(alone.state(), changing.state(), &format!("{count} threads"));
+        assert_eq!(threads.called() > 0, count > 1, "{count} threads");
     }
 }
 
@@ -107,7 +110,7 @@ fn a_long_rest_leaves_no_denormal_numbers() {
     params.dt = 0.005;
     params.gravity = Vec3::ZERO;
     let mut run = simulation((model, params, state));
-    steps(&mut run, 20_000);
+    run.steps(20_000).expect("it is stable");
     let state = run.state();
     let arrays = [&state.position, &state.position_low, &state.velocity, &state.velocity_low];
     let numbers = arrays.into_iter().flatten().flat_map(|vector| vector.to_array());
@@ -120,20 +123,21 @@ fn golden_steps(kind: Kind) -> &'static [u64] {
     if kind == Kind::Benchmark { &[0, 1, 10] } else { &[0, 1, 100, 1000] }
 }
 
-/// For each built-in scene its hashes, with so many threads.
-fn hashes(threads: usize) -> BTreeMap<String, BTreeMap<String, String>> {
+/// By the name of a scene and the step.
+type Hashes = BTreeMap<String, BTreeMap<String, String>>;
+
+/// The hashes of some built-in scenes, with these threads.
+fn hashes(threads: &Arc<Threads>, is_wanted: impl Fn(&Builtin) -> bool) -> Hashes {
     let mut found = BTreeMap::new();
-    for builtin in BUILTIN {
+    for builtin in BUILTIN.iter().filter(|builtin| is_wanted(builtin)) {
         let mut run =
             Scene::builtin(builtin.name).and_then(|scene| scene.simulation()).expect("it is built in");
         run.keep_history(0);
-        if threads > 1 {
-            run.set_workers(Arc::new(Threads(threads)));
-        }
+        run.set_workers(threads.clone());
         let mut hashes = BTreeMap::new();
         for &step in golden_steps(builtin.kind) {
             let left = step - run.state().step;
-            steps(&mut run, left);
+            run.steps(left).expect("it is stable");
             hashes.insert(step.to_string(), format!("{:016x}", run.state_hash()));
         }
         found.insert(builtin.name.to_owned(), hashes);
@@ -145,16 +149,21 @@ fn hashes(threads: usize) -> BTreeMap<String, BTreeMap<String, String>> {
 #[test]
 fn every_built_in_scene_has_its_golden_hashes() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/goldens.json");
-    let found = hashes(1);
+    let found = hashes(&Threads::new(1), |_| true);
     if std::env::var_os("SPRUNG_UPDATE_GOLDENS").is_some() {
         let text = serde_json::to_string_pretty(&found).expect("texts can be written");
         std::fs::write(path, text + "\n").expect("the file can be written");
     }
     let text = std::fs::read_to_string(path).expect("goldens.json lies in crates/sprung");
-    let golden: BTreeMap<String, BTreeMap<String, String>> = serde_json::from_str(&text).expect("it is JSON");
+    let mut golden: Hashes = serde_json::from_str(&text).expect("it is JSON");
     assert_eq!(
         found, golden,
         "other bits: see CONTRIBUTING.md before writing new goldens with SPRUNG_UPDATE_GOLDENS=1"
     );
-    assert_eq!(hashes(3), golden, "other bits with three threads");
+    // Of those that are large enough to be divided, with threads too.
+    let threads = Threads::new(3);
+    let found = hashes(&threads, |builtin| builtin.kind == Kind::Benchmark);
+    assert!(threads.called() >= 20, "both are divided at every step");
+    golden.retain(|name, _| found.contains_key(name));
+    assert_eq!(found, golden, "other bits with three threads");
 }

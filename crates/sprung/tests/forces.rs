@@ -121,7 +121,7 @@ proptest! {
         }
         let allowed = rounding::of_step(&model, &params, &state);
         let mut after = state.clone();
-        SymplecticEuler::new(&model, &params).step(&params, &mut after, &Inline);
+        SymplecticEuler::new(model.clone(), &params).step(&params, &mut after, &Inline);
         for (at, [allowed_x, allowed_v]) in allowed.into_iter().enumerate() {
             let kick = if params.is_fixed(at) { DVec3::ZERO } else { sum[at] * params.dt / f64::from(params.point_mass[at]) };
             let expected_v = velocity(&state, at) + kick;

@@ -64,7 +64,7 @@ proptest! {
     fn works_add_up_to_the_change_of_kinetic_energy(network in network()) {
         let (model, params, state) = driven(&network);
         let mut state = simulation((model.clone(), params.clone(), state)).state().clone(); // fixed points at rest
-        let mut solver = SymplecticEuler::new(&model, &params);
+        let mut solver = SymplecticEuler::new(model.clone(), &params);
         for _ in 0..20 {
             let before = state.clone();
             solver.step(&params, &mut state, &Inline);

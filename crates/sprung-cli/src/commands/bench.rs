@@ -61,13 +61,14 @@ pub fn run(args: &BenchArgs) -> Result<()> {
             "peak MB"
         ));
     }
+    let threads = args.threads.unwrap_or_else(source::processors);
     if let [scene] = scenes[..] {
-        print(&measure(scene, args.threads)?, args.json);
+        print(&measure(scene, threads)?, args.json);
         return Ok(());
     }
     // A process for each, as the peak of memory is a process's.
     for scene in scenes {
-        print(&measure_apart(scene, args.threads)?, args.json);
+        print(&measure_apart(scene, threads)?, args.json);
     }
     Ok(())
 }
@@ -85,23 +86,22 @@ fn measure(scene: &str, threads: usize) -> Result<Figures> {
     let args = SceneArgs { scene: scene.to_owned(), set: Vec::new() };
     let begun = Instant::now();
     let (name, scene) = source::scene(&args)?;
-    let quiet = source::simulation(&scene, threads)?;
-    let (model, params) = (quiet.model().clone(), quiet.params().clone());
-    let (points, springs, dt) = (model.point_count(), model.spring_count(), params.dt);
-    let mut state = quiet.state().clone();
-    drop(quiet);
+    memory::check(scene.estimated_bytes(), "the scene")?;
+    let (model, params, mut state) = scene.build()?;
+    let (points, springs) = (model.point_count(), model.spring_count());
+    // Points that cannot move lose it again when the simulation is made.
     add_noise(&mut state.velocity);
     let mut simulation = Simulation::new(model, params, state)?;
     simulation.keep_history(0);
-    simulation.set_workers(source::workers(threads)?);
-    simulation.step(dt)?;
+    simulation.set_workers(source::workers(Some(threads))?);
+    simulation.steps(1)?;
     let setup_s = begun.elapsed().as_secs_f64();
 
     let steps = (STEPS_TIMES_SPRINGS / springs.max(points) as u64).clamp(10, 100_000);
     let mut best = f64::INFINITY;
     for _ in 0..REPEATS {
         let begun = Instant::now();
-        (0..steps).try_for_each(|_| simulation.step(dt))?;
+        simulation.steps(steps)?;
         best = best.min(begun.elapsed().as_secs_f64() / steps as f64);
     }
     Ok(Figures {

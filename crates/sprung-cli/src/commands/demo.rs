@@ -21,7 +21,7 @@ pub fn run(scene: Option<&SceneArgs>) -> sprung::Result<()> {
         plot: None,
         at: None,
         size: None,
-        threads: 1,
+        threads: None,
         quiet: false,
     })?;
     say("Try next:");

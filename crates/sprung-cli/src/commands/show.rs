@@ -51,7 +51,7 @@ struct EnergyParts {
 /// Prints the description.
 pub fn run(args: &ShowArgs) -> Result<()> {
     let (name, scene) = source::scene(&args.scene)?;
-    let simulation = source::simulation(&scene, 1)?;
+    let simulation = source::simulation(&scene, Some(1))?;
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
     // Of a large scene each takes about a second; so both at once.
     let (sharp, certified) = std::thread::scope(|scope| {

@@ -19,7 +19,7 @@ pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
     // What is wrong with the scene is said before a window is tried.
     let opened = scene.map(source::scene_and_file).transpose()?;
     match window(opened) {
-        Err(error) if error.code() == Code::Unsupported => {
+        Err(error) if error.code() == Code::NoWindow => {
             note(format_args!("sprung: {error}. Here is the demonstration instead."));
             demo::run(scene)
         }
@@ -34,11 +34,12 @@ type Opened = (String, Scene, Option<PathBuf>);
 fn window(opened: Option<Opened>) -> Result<()> {
     let (source, path) =
         opened.map_or((None, None), |(name, scene, path)| (Some(sprung_app::Source { name, scene }), path));
-    sprung_app::run(sprung_app::Options { source, path, memory_limit: memory::available() })
+    let (memory_limit, workers) = (memory::available(), source::workers(None)?);
+    sprung_app::run(sprung_app::Options { source, path, memory_limit, workers })
 }
 
 #[cfg(not(feature = "window"))]
 fn window(_: Option<Opened>) -> Result<()> {
-    let error = Error::new(Code::Unsupported, "this build of sprung has no window");
+    let error = Error::new(Code::NoWindow, "this build of sprung has no window");
     Err(error.with_fix("build it with its default features"))
 }

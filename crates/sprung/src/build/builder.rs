@@ -6,9 +6,10 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::connect::{pairs_between, pairs_within};
+use super::numbering::hidden_order;
 use crate::error::{Code, Error, Result};
 use crate::math::{distance, without_negligible};
-use crate::model::{Body, Joint, Model, Surface, SurfaceKind};
+use crate::model::{Body, HiddenOrder, Joint, Model, Surface, SurfaceKind};
 use crate::params::{
     DAMPING_RANGE, DT_RANGE, LENGTH_RANGE, Params, STIFFNESS_RANGE, check_in, check_mass, check_vector,
 };
@@ -208,16 +209,12 @@ impl ModelBuilder {
             return Err(Error::new(Code::NotFound, sentence));
         }
         let allowed = self.spring_limit().saturating_sub(self.springs.len());
-        let pairs = pairs_within(&self.position[points.clone()], radius, allowed)?
+        let mut pairs = pairs_within(&self.position[points.clone()], radius, allowed)?
             .ok_or_else(|| self.too_many_springs().at_field("radius"))?;
         self.ensure_body()?;
-        let first = self.springs.len();
-        self.reserve(0, pairs.len());
         let offset = points.start as u32;
-        for [i, j] in pairs {
-            self.push_spring([i + offset, j + offset], material);
-        }
-        Ok(first..self.springs.len())
+        pairs.iter_mut().flatten().for_each(|point| *point += offset);
+        Ok(self.push_springs(pairs, material))
     }
 
     /// Joins every point of `a` to every point of `b` that is no further away than `radius` (m), and none within `a` or
@@ -244,15 +241,14 @@ impl ModelBuilder {
         }
         let allowed = self.spring_limit().saturating_sub(self.springs.len());
         let (here, there) = (&self.position[a.clone()], &self.position[b.clone()]);
-        let pairs = pairs_between(here, there, radius, allowed)?
+        let mut pairs = pairs_between(here, there, radius, allowed)?
             .ok_or_else(|| self.too_many_springs().at_field("radius"))?;
-        self.reserve(0, pairs.len());
-        let first = self.springs.len();
-        for [i, j] in pairs {
-            let (i, j) = (i + a.start as u32, j + b.start as u32);
-            self.push_spring([i.min(j), i.max(j)], material);
+        let (a, b) = (a.start as u32, b.start as u32);
+        for pair in &mut pairs {
+            let (i, j) = (pair[0] + a, pair[1] + b);
+            *pair = [i.min(j), i.max(j)];
         }
-        Ok(first..self.springs.len())
+        Ok(self.push_springs(pairs, material))
     }
 
     /// Gives the current body a surface for drawing and export.
@@ -307,14 +303,17 @@ impl ModelBuilder {
                 *velocity = Vec3::ZERO;
             }
         }
+        let hidden_order = HiddenOrder::new(hidden_order(&self.position, &self.springs));
+        let rest_length = Arc::new(self.rest_length);
         let model = Model {
             point_count: self.position.len(),
             springs: self.springs,
-            spring_rest_length: self.rest_length.clone(),
+            spring_rest_length: rest_length.clone(),
             bodies: self.bodies,
             joints: self.joints,
             surfaces: self.surfaces,
             springs_at: Default::default(),
+            hidden_order,
         };
         let params = Params {
             dt: 0.01,
@@ -325,7 +324,7 @@ impl ModelBuilder {
             point_pinned: Arc::new(self.pinned),
             spring_stiffness: Arc::new(self.stiffness),
             spring_damping: Arc::new(self.damping),
-            spring_rest_length: Arc::new(self.rest_length),
+            spring_rest_length: rest_length,
             spring_cut: Arc::new(vec![false; model.springs.len()]),
             external_forces: Default::default(),
             grabs: Vec::new(),
@@ -348,6 +347,36 @@ impl ModelBuilder {
         self.springs.push([i, j]);
         self.stiffness.push(material.stiffness);
         self.damping.push(material.damping);
+        self.end_springs_here();
+    }
+
+    /// As [`push_spring`](Self::push_spring) with each in turn; gives the range of them all.
+    fn push_springs(&mut self, mut springs: Vec<[u32; 2]>, material: Material) -> Range<usize> {
+        let first = self.springs.len();
+        let end = first + springs.len();
+        self.rest_length.reserve_exact(springs.len());
+        self.rest_length.extend(
+            springs.iter().map(|&[i, j]| distance(self.position[i as usize], self.position[j as usize])),
+        );
+        for (list, value) in
+            [(&mut self.stiffness, material.stiffness), (&mut self.damping, material.damping)]
+        {
+            list.reserve_exact(springs.len());
+            list.resize(end, value);
+        }
+        if self.springs.capacity() == 0 {
+            // The first springs of a model, and often all of them: no copy.
+            self.springs = springs;
+        } else {
+            self.springs.reserve_exact(springs.len());
+            self.springs.append(&mut springs);
+        }
+        self.end_springs_here();
+        first..end
+    }
+
+    /// The springs so far belong to the last joint or body.
+    fn end_springs_here(&mut self) {
         let end = self.springs.len();
         match self.joints.last_mut() {
             Some(joint) => joint.springs.end = end,

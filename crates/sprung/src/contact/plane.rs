@@ -67,25 +67,6 @@ impl Plane {
         dot(self.point - position, self.normal)
     }
 
-    /// The force on a point, N.
-    #[inline(always)]
-    pub(crate) fn force(&self, position: Vec3, velocity: Vec3) -> Vec3 {
-        let depth = self.depth(position);
-        if depth <= 0.0 {
-            return Vec3::ZERO;
-        }
-        let push = self.stiffness * depth - self.damping * dot(velocity, self.normal);
-        self.normal * self.limit(push)
-    }
-
-    #[inline(always)]
-    fn limit(&self, push: f32) -> f32 {
-        match self.law {
-            ContactLaw::Push => push.max(0.0),
-            ContactLaw::Report => push,
-        }
-    }
-
     /// Depth in float64, for the ledger.
     pub(crate) fn depth64(&self, position: DVec3) -> f64 {
         (self.point.as_dvec3() - position).dot(self.normal.as_dvec3())

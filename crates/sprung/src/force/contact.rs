@@ -1,6 +1,6 @@
 //! Contact with colliders; their shapes and laws are in [`contact`](crate::contact).
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Account, Force, Store};
 use crate::model::Model;
@@ -17,14 +17,6 @@ pub(crate) const FORCE: Force = Force {
     parts,
     at,
 };
-
-pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
-    for plane in &params.planes {
-        for (point, force) in forces.iter_mut().enumerate() {
-            *force += plane.force(state.position[point], state.velocity[point]);
-        }
-    }
-}
 
 /// Σ ½k_c·p² of one point over the planes, J; zero if no force can move it.
 pub(crate) fn stored(params: &Params, point: usize, position: DVec3) -> f64 {

@@ -1,6 +1,6 @@
 //! Constant forces on single points.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Account, Force, Store};
 use crate::model::Model;
@@ -17,12 +17,6 @@ pub(crate) const FORCE: Force = Force {
     parts,
     at,
 };
-
-pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
-    for (&point, &force) in &params.external_forces {
-        forces[point] += force;
-    }
-}
 
 fn at(_: &Model, params: &Params, _: Moment<'_>, point: usize) -> DVec3 {
     params.external_forces.get(&point).map_or(DVec3::ZERO, |force| force.as_dvec3())

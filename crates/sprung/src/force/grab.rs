@@ -1,6 +1,6 @@
 //! Grabs: a point pulled towards a place by a spring of rest length zero.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Account, Force, Store};
 use crate::model::Model;
@@ -19,27 +19,19 @@ pub(crate) const FORCE: Force = Force {
     at,
 };
 
-pub(crate) fn accumulate(params: &Params, state: &State, forces: &mut [Vec3]) {
-    for grab in &params.grabs {
-        let pull = (grab.target - state.position[grab.point]) * grab.stiffness;
-        forces[grab.point] += pull - state.velocity[grab.point] * grab.damping;
-    }
-}
-
-/// The grabbed points and the forces on them, in float64.
-pub(crate) fn forces<'a>(params: &'a Params, state: &'a State) -> impl Iterator<Item = (usize, DVec3)> + 'a {
-    params.grabs.iter().map(|grab| (grab.point, force(grab, state.into())))
-}
-
-fn force(grab: &Grab, moment: Moment<'_>) -> DVec3 {
-    let pull = (grab.target.as_dvec3() - moment.position(grab.point)) * f64::from(grab.stiffness);
-    pull - moment.velocity(grab.point) * f64::from(grab.damping)
+/// k (target − x) − d v, N, in float64.
+pub(crate) fn force(grab: &Grab, position: DVec3, velocity: DVec3) -> DVec3 {
+    let pull = (grab.target.as_dvec3() - position) * f64::from(grab.stiffness);
+    pull - velocity * f64::from(grab.damping)
 }
 
 fn at(_: &Model, params: &Params, moment: Moment<'_>, point: usize) -> DVec3 {
-    params.grabs.iter().filter(|grab| grab.point == point).map(|grab| force(grab, moment)).sum()
+    let here = params.grabs.iter().filter(|grab| grab.point == point);
+    here.map(|grab| force(grab, moment.position(point), moment.velocity(point))).sum()
 }
 
 fn parts(_: &Model, params: &Params, state: &State, _: &mut [DVec3], rest: &mut [DVec3]) {
-    forces(params, state).for_each(|(point, force)| rest[point] += force);
+    for grab in &params.grabs {
+        rest[grab.point] += force(grab, state.position64(grab.point), state.velocity64(grab.point));
+    }
 }

@@ -1,6 +1,6 @@
 //! Gravity: the same acceleration for every point.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{Account, Force, Store};
 use crate::model::Model;
@@ -17,12 +17,6 @@ pub(crate) const FORCE: Force = Force {
     parts,
     at,
 };
-
-pub(crate) fn accumulate(params: &Params, forces: &mut [Vec3]) {
-    for (force, &mass) in forces.iter_mut().zip(params.point_mass.iter()) {
-        *force += params.gravity * mass;
-    }
-}
 
 /// −m g·x of one point, J; zero if no force can move it.
 pub(crate) fn stored(params: &Params, point: usize, position: DVec3) -> f64 {

@@ -1,49 +1,83 @@
-//! v += a·dt, then x += v·dt, over plain floats, keeping what rounding drops.
+//! All other forces on the points of a block, and their move.
 
-use crate::math::two_sum;
+use super::{LANES, Lanes};
+use crate::contact::{ContactLaw, Plane};
+use glam::Vec3;
 
-/// A velocity component smaller than this becomes zero, m/s: a cloth at rest must not fill with denormal numbers,
-/// which are slow and whose treatment differs from host to host.
+/// A velocity component smaller than this becomes zero, m/s: a cloth at rest must not fill with denormal numbers, which
+/// are slow and whose treatment differs from host to host.
 const NEGLIGIBLE_SPEED: f32 = 1e-20;
 
-/// Rounding residues smaller than this become zero, for the same reason.
-const NEGLIGIBLE_RESIDUE: f32 = 1e-30;
+/// A change of velocity smaller than this is none, m/s. Residues of positions and velocities are then multiples of its
+/// last bit, or of that of the smallest speed × the smallest step, and never denormal.
+const NEGLIGIBLE_KICK: f32 = 1e-28;
 
-/// Exponent bits of a float32; all set in infinities and NaNs.
-const EXPONENT: u32 = 0x7f80_0000;
-
-/// Positions and velocities as plain floats, xyz interleaved, each with what rounding dropped.
-pub(crate) struct Motion<'a> {
-    pub position: &'a mut [f32],
-    pub position_low: &'a mut [f32],
-    pub velocity: &'a mut [f32],
-    pub velocity_low: &'a mut [f32],
+/// What acts on every point alike.
+#[derive(Clone, Copy)]
+pub(crate) struct Field<'a> {
+    pub gravity: Vec3,
+    pub planes: &'a [Plane],
+    pub dt: f32,
 }
 
-/// One semi-implicit Euler move with the accelerations `a` (m/s²) and step `dt` (s).
-/// A fixed point has a = 0 and v = 0 and stays. Returns whether every position is finite.
-///
-/// Plain slices and no branch, so that the compiler makes vector code of it.
-pub(crate) fn advance(motion: Motion<'_>, acceleration: &[f32], dt: f32) -> bool {
-    let n = acceleration.len();
-    let (x, x_low) = (&mut motion.position[..n], &mut motion.position_low[..n]);
-    let (v, v_low) = (&mut motion.velocity[..n], &mut motion.velocity_low[..n]);
-    let mut not_finite = 0u32;
-    for c in 0..n {
-        let (speed, speed_low) = two_sum(v[c], acceleration[c] * dt + v_low[c]);
-        let still = speed.abs() < NEGLIGIBLE_SPEED;
-        v[c] = if still { 0.0 } else { speed };
-        v_low[c] = if still { 0.0 } else { without_residue(speed_low) };
-
-        let (place, place_low) = two_sum(x[c], v[c] * dt + x_low[c]);
-        x[c] = place;
-        x_low[c] = without_residue(place_low);
-        not_finite |= u32::from(place.to_bits() & EXPONENT == EXPONENT);
-    }
-    not_finite == 0
+/// One component of some points' motion, with what rounding dropped.
+pub(super) struct Motion<'a> {
+    pub position: &'a mut Lanes,
+    pub position_low: &'a mut Lanes,
+    pub velocity: &'a mut Lanes,
+    pub velocity_low: &'a mut Lanes,
 }
 
+/// One component of a semi-implicit Euler move: v += a·dt, then x += v·dt, with a = f/m + g, keeping what rounding drops.
+/// A point that no force can move has 1/m = 0 and a = 0.
 #[inline(always)]
-fn without_residue(value: f32) -> f32 {
-    if value.abs() < NEGLIGIBLE_RESIDUE { 0.0 } else { value }
+pub(super) fn advance(motion: Motion<'_>, force: &Lanes, inverse_mass: &Lanes, gravity: f32, dt: f32) {
+    // Into arrays of its own: what may be the same memory as something else cannot be done in vectors.
+    let zeros = [0.0; LANES];
+    let (mut x, mut x_low, mut v, mut v_low) = (zeros, zeros, zeros, zeros);
+    for lane in 0..LANES {
+        let fall = if inverse_mass[lane] > 0.0 { gravity } else { 0.0 };
+        let acceleration = force[lane] * inverse_mass[lane] + fall;
+        let kick = acceleration * dt + motion.velocity_low[lane];
+        let kick = if kick.abs() < NEGLIGIBLE_KICK { 0.0 } else { kick };
+        let (speed, speed_low) = fast_two_sum(motion.velocity[lane], kick);
+        v[lane] = if speed.abs() < NEGLIGIBLE_SPEED { 0.0 } else { speed };
+        v_low[lane] = speed_low;
+        let way = v[lane] * dt + motion.position_low[lane];
+        (x[lane], x_low[lane]) = fast_two_sum(motion.position[lane], way);
+    }
+    *motion.position = x;
+    *motion.position_low = x_low;
+    *motion.velocity = v;
+    *motion.velocity_low = v_low;
+}
+
+/// a + b in float32 and what the rounding dropped (Dekker's Fast2Sum): exact where |a| ≥ |b|. Where an increment b is the
+/// larger one, the residue is off by at most an ulp of b, which is as far as b itself is off, a rounded product.
+#[inline(always)]
+fn fast_two_sum(a: f32, b: f32) -> (f32, f32) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+/// Adds the push of a plane to the forces on some points: see [`Plane`].
+#[inline(always)]
+pub(super) fn push_out(plane: &Plane, points: [&Lanes; 6], force: &mut [Lanes; 3]) {
+    let [x, y, z, u, v, w] = points;
+    let (point, normal) = (plane.point, plane.normal);
+    let may_pull = plane.law == ContactLaw::Report;
+    let mut push = [0.0; LANES];
+    for lane in 0..LANES {
+        let depth =
+            (point.x - x[lane]) * normal.x + (point.y - y[lane]) * normal.y + (point.z - z[lane]) * normal.z;
+        let speed = u[lane] * normal.x + v[lane] * normal.y + w[lane] * normal.z;
+        let answer = plane.stiffness * depth - plane.damping * speed;
+        let allowed = if may_pull || answer > 0.0 { answer } else { 0.0 };
+        push[lane] = if depth > 0.0 { allowed } else { 0.0 };
+    }
+    for (force, along) in force.iter_mut().zip(normal.to_array()) {
+        for lane in 0..LANES {
+            force[lane] += push[lane] * along;
+        }
+    }
 }

@@ -80,12 +80,15 @@ impl Group<'_> {
             let sentence = format!("makes a spring {length:e} m long at rest, and it may be at most 1e9 m");
             Error::new(Code::OutOfRange, sentence).at_field(format!("{path}.rest_scale"))
         };
-        let rest_length = Arc::make_mut(&mut params.spring_rest_length);
-        for length in &mut rest_length[self.springs.clone()] {
-            *length *= self.rest_scale;
-            if !LENGTH_RANGE.contains(length) {
-                return Err(too_long(*length, &self.path));
-            }
+        let scaled = |&length: &f32| length * self.rest_scale;
+        let lengths = &params.spring_rest_length[self.springs.clone()];
+        if let Some(length) = lengths.iter().map(scaled).find(|length| !LENGTH_RANGE.contains(length)) {
+            return Err(too_long(length, &self.path));
+        }
+        // Shared with the model for as long as nothing is said of them.
+        if self.rest_scale != 1.0 {
+            let lengths = &mut Arc::make_mut(&mut params.spring_rest_length)[self.springs.clone()];
+            lengths.iter_mut().for_each(|length| *length = scaled(length));
         }
         for (index, exception) in self.except.iter().enumerate() {
             let path = format!("{}.except[{index}]", self.path);
@@ -98,9 +101,10 @@ impl Group<'_> {
                     Arc::make_mut(&mut params.spring_damping)[springs.clone()].fill(damping as f32);
                 }
                 if let Some(length) = exception.rest_length {
-                    rest_length[springs.clone()].fill(length as f32);
+                    Arc::make_mut(&mut params.spring_rest_length)[springs.clone()].fill(length as f32);
                 }
                 if let Some(scale) = exception.rest_scale {
+                    let rest_length = Arc::make_mut(&mut params.spring_rest_length);
                     for spring in springs {
                         rest_length[spring] = model.spring_rest_length()[spring] * scale as f32;
                         if !LENGTH_RANGE.contains(&rest_length[spring]) {

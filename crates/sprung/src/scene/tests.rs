@@ -1,6 +1,8 @@
 //! The built-in scenes, the round trip, `set`, and what the schema says.
 #![allow(clippy::unwrap_used)]
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::*;
@@ -20,6 +22,23 @@ fn pinned(params: &Params) -> Vec<usize> {
 fn material(params: &Params, stiffness: f32, damping: f32) {
     assert!(params.spring_stiffness.iter().all(|&value| value == stiffness));
     assert!(params.spring_damping.iter().all(|&value| value == damping));
+}
+
+#[test]
+fn rest_lengths_are_kept_once_until_something_is_said_of_them() {
+    let build = |extra: &str| {
+        let text = format!(
+            "[[body]]\nname = \"pair\"\npoints = [[0, 0, 0], [2, 0, 0]]\n\
+             [[body.springs]]\npairs = [[0, 1]]\nstiffness = 1\ndamping = 0\n{extra}"
+        );
+        let (model, params, _) =
+            Scene::parse(&text, "test").expect("valid").build().expect("it can be built");
+        (model.spring_rest_length, params.spring_rest_length)
+    };
+    let (own, current) = build("");
+    assert!(Arc::ptr_eq(&own, &current));
+    let (own, current) = build("rest_scale = 0.5");
+    assert_eq!((own[0], current[0]), (2.0, 1.0));
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Semi-implicit ("symplectic") Euler: the method of the report.
 
-use glam::Vec3;
+use std::sync::Arc;
 
-use crate::force;
-use crate::kernel::{Motion, SpringKernel, advance};
+use glam::{DVec3, Vec3};
+
+use crate::kernel::{Level, Screen, Team};
 use crate::model::Model;
 use crate::params::Params;
 use crate::state::State;
@@ -12,85 +13,126 @@ use crate::workers::Workers;
 /// The semi-implicit Euler method (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, eq. I.1.9):
 /// v⁺ = v + dt·M⁻¹ f(x, v), then x⁺ = x + dt·v⁺.
 ///
-/// Owns its scratch memory, in which it packs masses and springs: make it anew when masses, pins, springs or their
-/// parameters have changed, and [`refresh_point`](Self::refresh_point) where a hand takes or leaves one. Each step is the same function of parameters and state, whatever was computed before.
+/// It keeps the points in an order and a layout of its own: [`load`](Self::load) a state, [`advance`](Self::advance) it by
+/// any number of steps, and [`store`](Self::store) it; [`step`](Self::step) does all three. It also packs masses and
+/// springs: tell it with [`refresh`](Self::refresh) when parameters have changed. Each step is the same function of
+/// parameters and state, whatever was computed before.
+///
+/// ```
+/// use sprung::{Inline, scene::Scene, solver::SymplecticEuler};
+///
+/// let simulation = Scene::builtin("jelly")?.simulation()?;
+/// let (model, params, mut state) = (simulation.model(), simulation.params(), simulation.state().clone());
+/// let mut solver = SymplecticEuler::new(model.clone(), params);
+/// solver.load(&state);
+/// solver.advance(params, 100, &Inline);
+/// solver.store(&mut state);
+/// # Ok::<(), sprung::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct SymplecticEuler {
-    springs: SpringKernel,
-    inverse_mass: Vec<f32>,
-    /// Forces, N, and after division by the mass accelerations, m/s². Zero between steps.
-    forces: Vec<Vec3>,
+    model: Arc<Model>,
+    team: Team,
 }
 
 impl SymplecticEuler {
-    /// A solver for this model under these parameters.
-    pub fn new(model: &Model, params: &Params) -> Self {
-        Self {
-            springs: SpringKernel::new(model, params),
-            inverse_mass: (0..model.point_count()).map(|point| params.inverse_mass(point)).collect(),
-            forces: vec![Vec3::ZERO; model.point_count()],
+    /// A solver for this model under these parameters, with every point at the origin and at rest.
+    pub fn new(model: impl Into<Arc<Model>>, params: &Params) -> Self {
+        let model = model.into();
+        Self { team: Team::new(&model, params), model }
+    }
+
+    /// Uses these vector instructions if the processor has them, instead of the widest that it has. The bits are the same.
+    pub fn set_level(&mut self, level: Level) {
+        self.team.set_level(level);
+    }
+
+    /// Takes over new parameters; what is the same as in `old` is not packed again.
+    pub fn refresh(&mut self, old: &Params, params: &Params) {
+        if !params.shares_springs_with(old) {
+            self.team.set_laws(&self.model, params);
+        }
+        if !params.shares_masses_with(old) || !params.carried.keys().eq(old.carried.keys()) {
+            self.team.set_masses(&self.model, params);
         }
     }
 
-    /// Learns that a point is now [carried](Params::carried), or no longer: cheaper than making the solver anew.
+    /// Learns that a point is now [carried](Params::carried), or no longer: cheaper than [`refresh`](Self::refresh).
     ///
     /// # Panics
     /// If there is no such point.
     pub fn refresh_point(&mut self, params: &Params, point: usize) {
-        self.inverse_mass[point] = params.inverse_mass(point);
+        self.team.set_mass(&self.model, params, point);
     }
 
-    /// Takes one step. Returns whether every position is still finite; if not, the state is of no use any more.
+    /// Takes over positions and velocities.
     ///
-    /// Forces add up in this order: springs (each point's in ascending order of their index), external forces, grabs, gravity, planes.
+    /// # Panics
+    /// If the state has not as many points as the model.
+    pub fn load(&mut self, state: &State) {
+        self.team.load(&self.model, state);
+    }
+
+    /// Takes up to so many steps of [`Params::dt`], and stops after one that leaves a position that is not finite: the state
+    /// is then of no use any more. Returns how many it took, and whether every position is finite.
+    ///
+    /// Forces add up in this order: springs (in that of the layout, a function of the model), planes, external forces,
+    /// grabs; divided by the mass, gravity comes last.
+    pub fn advance(&mut self, params: &Params, steps: u64, workers: &dyn Workers) -> (u64, bool) {
+        self.team.advance(&self.model, params, steps, workers)
+    }
+
+    /// Hands out positions and velocities, and leaves the rest of the state as it is.
+    ///
+    /// # Panics
+    /// If the state has not as many points as the model.
+    pub fn store(&self, state: &mut State) {
+        self.team.store(&self.model, state);
+    }
+
+    pub(crate) fn point_count(&self) -> usize {
+        self.model.point_count()
+    }
+
+    /// Keeps positions and velocities of now, to go back to, in place of those kept before: the next steps leave them alone.
+    pub(crate) fn keep(&mut self) {
+        self.team.keep();
+    }
+
+    /// Hands out positions and velocities as they were kept.
+    pub(crate) fn store_kept(&self, state: &mut State) {
+        self.team.store_kept(&self.model, state);
+    }
+
+    /// The energies now, cheaply, and how far they may be off.
+    pub(crate) fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
+        self.team.screen(params, workers)
+    }
+
+    /// One step of a state: its positions, velocities, step and time. Returns whether every position is still finite.
     pub fn step(&mut self, params: &Params, state: &mut State, workers: &dyn Workers) -> bool {
-        // 1. and 2. Forces on every point.
-        self.accumulate(params, state, workers);
-
-        // Accelerations f/m; zero where the point is fixed.
-        for (force, &inverse_mass) in self.forces.iter_mut().zip(&self.inverse_mass) {
-            *force *= inverse_mass;
-        }
-
-        // 3. v += f/m·dt, then x += v·dt.
-        let motion = Motion {
-            position: bytemuck::cast_slice_mut(&mut state.position),
-            position_low: bytemuck::cast_slice_mut(&mut state.position_low),
-            velocity: bytemuck::cast_slice_mut(&mut state.velocity),
-            velocity_low: bytemuck::cast_slice_mut(&mut state.velocity_low),
-        };
-        let finite = advance(motion, bytemuck::cast_slice(&self.forces), params.dt as f32);
-
-        // Then every f is set to zero.
-        self.forces.fill(Vec3::ZERO);
+        self.load(state);
+        let (_, finite) = self.advance(params, 1, workers);
+        self.store(state);
         state.tick(params.dt);
         finite
     }
 
-    /// The largest force on any point that it can move, N, at this state.
-    pub fn residual_force(&mut self, params: &Params, state: &State, workers: &dyn Workers) -> f64 {
-        self.accumulate(params, state, workers);
-        let free =
-            self.forces.iter().zip(&self.inverse_mass).filter(|&(_, &inverse_mass)| inverse_mass > 0.0);
-        let largest = free.map(|(force, _)| force.as_dvec3().length()).fold(0.0, f64::max);
-        self.forces.fill(Vec3::ZERO);
-        largest
+    /// Position (m) and velocity (m/s) of one point, with what rounding dropped.
+    pub(crate) fn motion64(&self, point: usize) -> [DVec3; 2] {
+        self.team.motion64(&self.model, point)
     }
 
-    /// The total force on each point at this state, N, as a step would use it. At a point that no force can move this is
-    /// what pulls at it, but for springs to others that are held, which a step need not know.
-    pub fn forces(&mut self, params: &Params, state: &State, workers: &dyn Workers, into: &mut Vec<Vec3>) {
-        self.accumulate(params, state, workers);
-        into.clone_from(&self.forces);
-        self.forces.fill(Vec3::ZERO);
+    /// The largest force on any point that it can move, N.
+    pub fn residual_force(&mut self, params: &Params) -> f64 {
+        let mut forces = Vec::new();
+        self.forces(params, &mut forces);
+        let free = forces.iter().enumerate().filter(|&(point, _)| !params.is_fixed(point));
+        free.map(|(_, force)| force.as_dvec3().length()).fold(0.0, f64::max)
     }
 
-    fn accumulate(&mut self, params: &Params, state: &State, workers: &dyn Workers) {
-        let forces = &mut self.forces;
-        self.springs.accumulate(&state.position, &state.velocity, forces, workers);
-        force::external::accumulate(params, forces);
-        force::grab::accumulate(params, state, forces);
-        force::gravity::accumulate(params, forces);
-        force::contact::accumulate(params, state, forces);
+    /// The total force on each point now, N, as the next step would use it, in the user's order.
+    pub fn forces(&mut self, params: &Params, into: &mut Vec<Vec3>) {
+        self.team.forces(&self.model, params, into);
     }
 }

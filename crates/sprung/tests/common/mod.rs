@@ -1,6 +1,10 @@
 //! What the engine's tests share: the naive twin, the report's four scenes, random networks, and a few helpers.
 #![allow(dead_code)] // each test file uses its own part
 
+pub mod hanging;
+pub mod motion;
+pub mod moving;
+pub mod plain;
 pub mod rounding;
 pub mod scenes;
 pub mod twin;
@@ -153,4 +157,62 @@ pub fn driven(network: &Network) -> (Model, Params, State) {
         damping: 3.0,
     });
     (model, params, state)
+}
+
+/// A square cloth of so many points a side, 1 m apart, held at two corners and moving. From 225 a side on it is large enough
+/// to be divided among three threads.
+pub fn large_cloth(side: usize) -> Simulation {
+    let mut builder = ModelBuilder::new();
+    let mut random = Random(side as u64);
+    for point in 0..side * side {
+        let at = Vec3::new((point % side) as f32, 0.0, (point / side) as f32);
+        builder.add_point(at, 1.0).expect("allowed");
+        builder.set_velocity(point, random.vector()).expect("allowed");
+    }
+    [0, side - 1].into_iter().for_each(|corner| builder.pin(corner).expect("there is such a point"));
+    let material = Material { stiffness: 100.0, damping: 1.0 };
+    builder.connect_within(0..side * side, 1.5, material).expect("allowed");
+    let mut run = builder.simulation().expect("there are points");
+    run.keep_history(0);
+    run
+}
+
+/// Asserts that two states are the same bit for bit; −0 is not 0.
+pub fn assert_same_bits(a: &State, b: &State, what: &str) {
+    let arrays = |state: &State| {
+        let arrays = [&state.position, &state.position_low, &state.velocity, &state.velocity_low];
+        arrays.map(|array| array.iter().map(|vector| vector.to_array().map(f32::to_bits)).collect::<Vec<_>>())
+    };
+    for (name, (a, b)) in ["x", "x low", "v", "v low"].into_iter().zip(arrays(a).iter().zip(arrays(b))) {
+        let differs = a.iter().zip(&b).position(|(a, b)| a != b);
+        assert_eq!(differs, None, "{what}: {name} of this point differs");
+    }
+    assert_eq!((a.step, a.time.to_bits(), a.ledger), (b.step, b.time.to_bits(), b.ledger), "{what}");
+}
+
+/// Random numbers for what is too large to let proptest shrink it: a linear congruence (Knuth, MMIX), its upper half.
+pub struct Random(pub u64);
+
+impl Random {
+    /// From 0 to `end` − 1.
+    pub fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % end
+    }
+
+    /// From 0 to 1.
+    pub fn share(&mut self) -> f32 {
+        self.below(1 << 23) as f32 / (1 << 23) as f32
+    }
+
+    /// Components from −1 to 1.
+    pub fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.share(), self.share(), self.share()) * 2.0 - Vec3::ONE
+    }
+
+    /// Some consecutive ones of so many, at least one.
+    pub fn range(&mut self, count: usize) -> std::ops::Range<usize> {
+        let start = self.below(count);
+        start..start + 1 + self.below(count - start)
+    }
 }

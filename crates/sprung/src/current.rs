@@ -1,0 +1,147 @@
+//! The current state: with the solver while it steps, and in the user's order when somebody asks.
+
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+use glam::DVec3;
+
+use crate::kernel::Screen;
+use crate::params::Params;
+use crate::solver::SymplecticEuler;
+use crate::state::State;
+use crate::workers::Workers;
+
+/// A solver and the state it is at. Positions and velocities are copied out of the solver's layout only when they are
+/// asked for, and back into it only when they were written to.
+#[derive(Debug)]
+pub(crate) struct Current {
+    solver: SymplecticEuler,
+    /// The state, while its positions and velocities are up to date.
+    state: OnceLock<State>,
+    /// The state while they are not: its step, time and sums are.
+    behind: Mutex<Option<State>>,
+    /// Whether the solver has this state.
+    is_loaded: bool,
+    /// Step, time and sums of the state that was kept; its positions and velocities are with the solver.
+    kept: State,
+}
+
+impl Clone for Current {
+    fn clone(&self) -> Self {
+        let (solver, state) = (self.solver.clone(), OnceLock::from(self.state().clone()));
+        Self { solver, state, behind: Mutex::default(), is_loaded: self.is_loaded, kept: self.kept.clone() }
+    }
+}
+
+impl Current {
+    pub fn new(solver: SymplecticEuler, state: State) -> Self {
+        let kept = state.counters();
+        let mut current =
+            Self { solver, state: OnceLock::from(state), behind: Mutex::default(), is_loaded: false, kept };
+        current.keep();
+        current
+    }
+
+    /// Keeps this state, in the solver's layout, in place of the one before. It is the first one until then.
+    pub fn keep(&mut self) {
+        self.solver().keep();
+        self.kept = self.counters().counters();
+    }
+
+    /// The state that was kept.
+    pub fn kept(&self) -> State {
+        let mut state = State::at_origin(&self.kept, self.solver.point_count());
+        self.solver.store_kept(&mut state);
+        state
+    }
+
+    /// The energies now, cheaply, and how far they may be off: for parameters that the solver has packed.
+    pub fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
+        let mut screen = self.solver().screen(params, workers);
+        screen.energy.sums = self.counters().ledger;
+        screen
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        self.state.get_or_init(|| {
+            let behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let mut state = behind.expect("a state is either here or there");
+            self.solver.store(&mut state);
+            state
+        })
+    }
+
+    /// The state, to write to.
+    pub fn state_mut(&mut self) -> &mut State {
+        self.state();
+        self.is_loaded = false;
+        self.state.get_mut().expect("it was just made")
+    }
+
+    /// The state to read and write step, time and sums of. Its positions and velocities may be out of date and must not be
+    /// written to.
+    pub fn counters(&mut self) -> &mut State {
+        match self.state.get_mut() {
+            Some(state) => state,
+            None => {
+                let behind = self.behind.get_mut().unwrap_or_else(PoisonError::into_inner);
+                behind.as_mut().expect("a state is either here or there")
+            }
+        }
+    }
+
+    /// The step it is at, and its time, s.
+    pub fn now(&self) -> (u64, f64) {
+        match self.state.get() {
+            Some(state) => (state.step, state.time),
+            None => {
+                let behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
+                behind.as_ref().map_or((0, 0.0), |state| (state.step, state.time))
+            }
+        }
+    }
+
+    /// The step it is at.
+    pub fn step(&self) -> u64 {
+        self.now().0
+    }
+
+    /// Position (m) and velocity (m/s) of one point, with what rounding dropped, without copying all others.
+    pub fn motion64(&self, point: usize) -> [DVec3; 2] {
+        match self.state.get() {
+            Some(state) => [state.position64(point), state.velocity64(point)],
+            None => self.solver.motion64(point),
+        }
+    }
+
+    /// Takes up to so many steps, and stops after one that leaves a position that is not finite. Returns whether all are.
+    pub fn advance(&mut self, params: &Params, steps: u64, workers: &dyn Workers) -> bool {
+        self.load();
+        if let Some(state) = self.state.take() {
+            *self.behind.get_mut().unwrap_or_else(PoisonError::into_inner) = Some(state);
+        }
+        let (taken, finite) = self.solver.advance(params, steps, workers);
+        let state = self.counters();
+        (0..taken).for_each(|_| state.tick(params.dt));
+        finite
+    }
+
+    /// The solver, at this state.
+    pub fn solver(&mut self) -> &mut SymplecticEuler {
+        self.load();
+        &mut self.solver
+    }
+
+    /// The solver, for changes of what it has packed: it may have another state.
+    pub fn unpacked(&mut self) -> &mut SymplecticEuler {
+        &mut self.solver
+    }
+
+    fn load(&mut self) {
+        // Whatever the solver has not is here.
+        if let (false, Some(state)) = (self.is_loaded, self.state.get()) {
+            self.solver.load(state);
+            self.is_loaded = true;
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Stiffness, damping and rest length of every spring, packed in the order of their use: one number where all springs
+//! that go through together share it.
+
+use super::energy::Norms;
+use super::plan::Plan;
+use super::spring::{LawLanes, Values as OneOrEach};
+use super::stripe::Mask;
+use super::{BLOCK, LANES, Lanes};
+use crate::model::Model;
+use crate::params::Params;
+
+/// Where the laws of a stripe or a bundle are.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Law {
+    /// The same for all: k_s, k_d, L.
+    Same([f32; 3]),
+    /// k_s and k_d the same, L from this set of lanes on.
+    Lengths([f32; 2], u32),
+    /// All of them for each spring, from this set of lanes on: each set of k_s, k_d and L in turn.
+    Each(u32),
+}
+
+/// Values for each lane.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Values(Vec<Lanes>);
+
+/// The springs' laws under some parameters.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Laws {
+    pub values: Values,
+    pub stripes: Vec<Law>,
+    /// Which lanes of each stripe are springs that are not cut.
+    pub masks: Vec<Mask>,
+    pub bundles: Vec<Law>,
+    /// k_s, k_d and L of the loose springs.
+    pub loose: Vec<[f32; 3]>,
+    pub norms: Norms,
+}
+
+impl Laws {
+    pub fn new(plan: &Plan, model: &Model, params: &Params) -> Self {
+        let mut laws = Self::default();
+        laws.fill(plan, model, params);
+        laws
+    }
+
+    /// Packs them anew, into the memory that is there.
+    pub fn fill(&mut self, plan: &Plan, model: &Model, params: &Params) {
+        let Self { values, stripes, masks, bundles, loose, norms } = self;
+        values.0.clear();
+        stripes.clear();
+        masks.clear();
+        bundles.clear();
+        loose.clear();
+        let law_of = |spring: usize| {
+            let k = if params.spring_cut[spring] { 0.0 } else { params.spring_stiffness[spring] };
+            let d = if params.spring_cut[spring] { 0.0 } else { params.spring_damping[spring] };
+            [k, d, params.spring_rest_length[spring]]
+        };
+        for stripe in &plan.stripes {
+            let springs = plan.springs_of(stripe);
+            let mut mask = Mask::default();
+            let place = |spring: u32| model.places(spring)[0] as usize % BLOCK;
+            for &spring in springs.iter().filter(|&&spring| !params.spring_cut[spring as usize]) {
+                let place = place(spring);
+                mask[place / LANES] |= 1 << (place % LANES);
+            }
+            masks.push(mask);
+            let live =
+                || springs.iter().map(|&spring| spring as usize).filter(|&spring| !params.spring_cut[spring]);
+            let shared = Shared::of(live().map(law_of));
+            let law = values.push(shared, BLOCK / LANES, |put| {
+                live().for_each(|spring| put(place(spring as u32), law_of(spring)));
+            });
+            stripes.push(law);
+        }
+        for bundle in &plan.bundles {
+            let rows = || bundle.rows.clone().map(|row| plan.springs_in_row(row));
+            let shared = Shared::of(rows().flatten().flatten().map(law_of));
+            // A lane to spare has length and rest length zero, and so no force, whatever its stiffness.
+            let law = values.push(shared.without_same_length(), bundle.rows.len(), |put| {
+                for (row, springs) in rows().enumerate() {
+                    for (lane, spring) in springs.into_iter().enumerate() {
+                        put(row * LANES + lane, spring.map_or([0.0; 3], law_of));
+                    }
+                }
+            });
+            bundles.push(law);
+        }
+        loose.extend(plan.loose.iter().map(|loose| law_of(loose.spring as usize)));
+        *norms = Norms::default();
+        for [k, _, rest] in (0..plan.springs).map(law_of) {
+            let (half, rest) = (0.5 * f64::from(k), f64::from(rest));
+            norms.ones += half;
+            norms.rest_lengths += half * rest * rest;
+        }
+    }
+}
+
+/// Which numbers some springs share.
+struct Shared {
+    law: [f32; 3],
+    material: bool,
+    length: bool,
+}
+
+impl Shared {
+    fn of(mut laws: impl Iterator<Item = [f32; 3]>) -> Self {
+        let law = laws.next().unwrap_or_default();
+        let mut shared = Self { law, material: true, length: true };
+        for [k, d, rest] in laws {
+            shared.material &= k == law[0] && d == law[1];
+            shared.length &= rest == law[2];
+        }
+        shared
+    }
+
+    fn without_same_length(self) -> Self {
+        Self { length: false, ..self }
+    }
+}
+
+impl Values {
+    /// Packs the laws of so many sets of lanes. `fill` is given what puts a law at a lane.
+    fn push(
+        &mut self,
+        shared: Shared,
+        sets: usize,
+        fill: impl FnOnce(&mut dyn FnMut(usize, [f32; 3])),
+    ) -> Law {
+        let [k, d, rest] = shared.law;
+        let first = self.0.len();
+        match shared {
+            Shared { material: true, length: true, .. } => Law::Same([k, d, rest]),
+            Shared { material: true, .. } => {
+                self.0.resize(first + sets, [0.0; LANES]);
+                fill(&mut |lane, law| self.0[first + lane / LANES][lane % LANES] = law[2]);
+                Law::Lengths([k, d], first as u32)
+            }
+            _ => {
+                self.0.resize(first + 3 * sets, [0.0; LANES]);
+                fill(&mut |lane, law| {
+                    for (part, value) in law.into_iter().enumerate() {
+                        self.0[first + 3 * (lane / LANES) + part][lane % LANES] = value;
+                    }
+                });
+                Law::Each(first as u32)
+            }
+        }
+    }
+
+    /// The laws of one set of lanes of a stripe, or of one row of a bundle.
+    #[inline(always)]
+    pub fn lanes(&self, law: &Law, set: usize) -> LawLanes<'_> {
+        use OneOrEach::{Each, Same};
+        match *law {
+            Law::Same([k, d, rest]) => {
+                LawLanes { stiffness: Same(k), damping: Same(d), rest_length: Same(rest) }
+            }
+            Law::Lengths([k, d], first) => {
+                let rest = &self.0[first as usize + set];
+                LawLanes { stiffness: Same(k), damping: Same(d), rest_length: Each(rest) }
+            }
+            Law::Each(first) => {
+                let [k, d, rest] = [0, 1, 2].map(|part| Each(&self.0[first as usize + 3 * set + part]));
+                LawLanes { stiffness: k, damping: d, rest_length: rest }
+            }
+        }
+    }
+}

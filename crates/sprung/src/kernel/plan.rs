@@ -1,0 +1,247 @@
+//! Which springs go through which loop: a function of the model alone.
+
+use std::ops::Range;
+
+use super::{BLOCK, GROUP, LANES};
+use crate::model::Model;
+
+/// A stripe takes part in whole sets of lanes, at about two fifths of what as many packed springs cost: it is worth it
+/// where at least this share of the lanes are springs.
+pub(super) const WORTH: f64 = 0.4;
+
+/// A block with no more springs than this makes stripes of all: a bundle takes longer to begin.
+pub(super) const FEW: usize = 8;
+
+/// Ends of packed springs lie less than this many places after the beginning of their group: 16 bits say which.
+pub(super) const WINDOW: usize = 1 << 16;
+
+/// Packed springs of one point in one lane; a point with more takes several lanes. Fewer would leave fewer lanes empty,
+/// and gather each point more often.
+pub(super) const MOST_ROWS: usize = 8;
+
+/// No spring: a lane to spare.
+const NONE: u32 = u32::MAX;
+
+/// Springs, sorted by the place of the end that comes first and by how they are evaluated.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub points: usize,
+    pub springs: usize,
+    pub blocks: Vec<BlockPlan>,
+    pub stripes: Vec<Stripe>,
+    /// The springs of all stripes, one after another, each stripe's by ascending place.
+    stripe_springs: Vec<u32>,
+    pub bundles: Vec<Bundle>,
+    /// The far ends of each row of a bundle, from the group's first point.
+    pub rows: Vec<[u16; LANES]>,
+    /// The springs of each row, or [`NONE`].
+    row_springs: Vec<[u32; LANES]>,
+    /// Springs to points beyond the window.
+    pub loose: Vec<Loose>,
+    /// How far beyond the first point of its block (a stripe) or group (a bundle) a spring may end, in places, less what a
+    /// block has.
+    pub reach: usize,
+}
+
+/// What is evaluated at one block, as ranges of the plan's lists: its stripes, and at the first of a group its bundles.
+#[derive(Clone, Debug)]
+pub(super) struct BlockPlan {
+    pub stripes: Range<usize>,
+    pub bundles: Range<usize>,
+}
+
+/// Springs of points of one block to the points at one offset.
+#[derive(Clone, Debug)]
+pub(super) struct Stripe {
+    pub offset: usize,
+    springs: Range<usize>,
+}
+
+/// Packed springs of 64 points of one group, which need not be different points nor in order: each point is a lane, and each
+/// row holds one spring of each.
+#[derive(Clone, Debug)]
+pub(super) struct Bundle {
+    /// From the group's first point.
+    pub points: [u16; LANES],
+    pub rows: Range<usize>,
+}
+
+/// A spring whose ends lie far apart in the hidden order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Loose {
+    pub spring: u32,
+    /// Places of the two ends.
+    pub ends: [u32; 2],
+}
+
+/// A spring of a block that is being planned.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Planned {
+    offset: u32,
+    /// The first end, from the first point of the block, or for a packed spring of the group.
+    near: u32,
+    spring: u32,
+}
+
+impl Plan {
+    pub fn new(model: &Model) -> Self {
+        let points = model.point_count();
+        let block_count = points.div_ceil(BLOCK);
+        let mut plan = Self {
+            points,
+            springs: model.spring_count(),
+            blocks: Vec::with_capacity(block_count),
+            stripes: Vec::new(),
+            stripe_springs: Vec::new(),
+            bundles: Vec::new(),
+            rows: Vec::new(),
+            row_springs: Vec::new(),
+            loose: Vec::new(),
+            reach: 0,
+        };
+        let sorted = SortedByBlock::new(model, block_count);
+        let (mut springs, mut packed) = (Vec::new(), Vec::new());
+        for group in (0..block_count).step_by(GROUP) {
+            packed.clear();
+            for block in group..block_count.min(group + GROUP) {
+                springs.clear();
+                springs.extend(sorted.springs_of(block).iter().map(|&spring| {
+                    let [near, far] = model.places(spring);
+                    Planned { offset: far - near, near: near - (block * BLOCK) as u32, spring }
+                }));
+                springs.sort_unstable();
+                let before = packed.len();
+                plan.push_block(&springs, &mut packed);
+                packed[before..]
+                    .iter_mut()
+                    .for_each(|spring| spring.near += ((block - group) * BLOCK) as u32);
+            }
+            plan.push_group(group, &mut packed);
+        }
+        plan.stripes.shrink_to_fit();
+        plan.stripe_springs.shrink_to_fit();
+        plan
+    }
+
+    /// How many blocks before its own a region must sweep too.
+    pub fn border_blocks(&self) -> usize {
+        self.reach.div_ceil(GROUP * BLOCK) * GROUP
+    }
+
+    /// The springs of a stripe, by ascending place of their first end.
+    pub fn springs_of(&self, stripe: &Stripe) -> &[u32] {
+        &self.stripe_springs[stripe.springs.clone()]
+    }
+
+    /// The spring in each lane of a row.
+    pub fn springs_in_row(&self, row: usize) -> [Option<usize>; LANES] {
+        self.row_springs[row].map(|spring| (spring != NONE).then_some(spring as usize))
+    }
+
+    /// Makes stripes of a block's springs; what is left over goes to `packed`.
+    fn push_block(&mut self, springs: &[Planned], packed: &mut Vec<Planned>) {
+        let stripes = self.stripes.len();
+        for same_offset in springs.chunk_by(|a, b| a.offset == b.offset) {
+            self.push_stripe(same_offset, springs.len() <= FEW, packed);
+        }
+        let bundles = self.bundles.len();
+        self.blocks.push(BlockPlan { stripes: stripes..self.stripes.len(), bundles: bundles..bundles });
+    }
+
+    /// Makes bundles of what is left over of a group of blocks.
+    fn push_group(&mut self, group: usize, packed: &mut Vec<Planned>) {
+        let bundles = self.bundles.len();
+        // By point, and for each point by ascending offset.
+        packed.sort_unstable_by_key(|spring| (spring.near, spring.offset, spring.spring));
+        let first = (group * BLOCK) as u32;
+        packed.retain(|&Planned { offset, near, spring }| {
+            let is_loose = near as usize + offset as usize >= WINDOW;
+            if is_loose {
+                self.loose.push(Loose { spring, ends: [first + near, first + near + offset] });
+            } else {
+                self.reach = self.reach.max(near as usize + offset as usize);
+            }
+            !is_loose
+        });
+        self.push_bundles(packed);
+        self.blocks[group].bundles = bundles..self.bundles.len();
+    }
+
+    /// Makes a stripe of a block's springs of one offset if that is worth it, or if the block has few; what is left over goes
+    /// to `packed`.
+    fn push_stripe(&mut self, springs: &[Planned], is_few: bool, packed: &mut Vec<Planned>) {
+        let sets = springs.chunk_by(|a, b| a.near as usize / LANES == b.near as usize / LANES).count();
+        let offset = springs[0].offset as usize;
+        let is_worth_it = is_few || springs.len() as f64 >= WORTH * (sets * LANES) as f64;
+        if !is_worth_it || offset >= WINDOW {
+            packed.extend_from_slice(springs);
+            return;
+        }
+        let begin = self.stripe_springs.len();
+        // Of springs side by side the first goes into the stripe.
+        for beside in springs.chunk_by(|a, b| a.near == b.near) {
+            self.stripe_springs.push(beside[0].spring);
+            packed.extend_from_slice(&beside[1..]);
+        }
+        self.stripes.push(Stripe { offset, springs: begin..self.stripe_springs.len() });
+        self.reach = self.reach.max(offset);
+    }
+
+    /// Bundles of a group's packed springs, which are sorted by point. Points with as many springs share a bundle.
+    fn push_bundles(&mut self, packed: &[Planned]) {
+        let by_point = packed.chunk_by(|a, b| a.near == b.near);
+        let mut lanes: Vec<&[Planned]> = by_point.flat_map(|springs| springs.chunks(MOST_ROWS)).collect();
+        lanes.sort_by_key(|springs| std::cmp::Reverse(springs.len()));
+        for lanes in lanes.chunks(LANES) {
+            let mut points = [0; LANES];
+            for (point, springs) in points.iter_mut().zip(lanes) {
+                *point = springs[0].near as u16;
+            }
+            let rows = self.rows.len()..self.rows.len() + lanes[0].len();
+            for row in 0..lanes[0].len() {
+                // A lane to spare joins its point to itself, with a law of zeros.
+                let (mut far, mut ids) = (points, [NONE; LANES]);
+                for (lane, springs) in lanes.iter().enumerate() {
+                    if let Some(spring) = springs.get(row) {
+                        far[lane] = (spring.near + spring.offset) as u16;
+                        ids[lane] = spring.spring;
+                    }
+                }
+                self.rows.push(far);
+                self.row_springs.push(ids);
+            }
+            self.bundles.push(Bundle { points, rows });
+        }
+    }
+}
+
+/// Springs sorted by the block of their first end, each block's in ascending order.
+struct SortedByBlock {
+    starts: Vec<usize>,
+    springs: Vec<u32>,
+}
+
+impl SortedByBlock {
+    fn new(model: &Model, blocks: usize) -> Self {
+        let block_of = |spring: usize| model.places(spring as u32)[0] as usize / BLOCK;
+        let mut starts = vec![0usize; blocks + 1];
+        for spring in 0..model.spring_count() {
+            starts[block_of(spring) + 1] += 1;
+        }
+        for block in 0..blocks {
+            starts[block + 1] += starts[block];
+        }
+        let mut next = starts.clone();
+        let mut springs = vec![0u32; model.spring_count()];
+        for spring in 0..springs.len() {
+            let at = &mut next[block_of(spring)];
+            springs[*at] = spring as u32;
+            *at += 1;
+        }
+        Self { starts, springs }
+    }
+
+    fn springs_of(&self, block: usize) -> &[u32] {
+        &self.springs[self.starts[block]..self.starts[block + 1]]
+    }
+}

@@ -1,0 +1,497 @@
+//! All regions: which thread sweeps which, and what they tell each other.
+//!
+//! Before a step a region copies its neighbours' points as far as springs reach, and after it leaves its own for them, in
+//! one of two sets in turn: one is read while the other is written, so that one fork and join for each step is enough.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::{DVec3, Vec3};
+
+use super::aligned::Arrays;
+use super::energy::{Screen, Sums, Survey};
+use super::integrate::Field;
+use super::laws::Laws;
+use super::level::{Checked, Level};
+use super::plan::Plan;
+use super::region::Region;
+use super::sweep::{Purpose, Push, PushKind, Sweep};
+use super::{BLOCK, GROUP};
+use crate::math::{self, COINCIDENT_SQUARED};
+use crate::model::Model;
+use crate::params::{Grab, Params};
+use crate::state::State;
+use crate::workers::Workers;
+
+/// When it is worth while to call on another thread.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worth {
+    /// Springs that each region has: handing over takes about as long as 20,000.
+    pub springs: usize,
+    /// Blocks that each region has for every one that it sweeps for its neighbour: that must be little beside its own. At
+    /// least two, or a neighbour would need more than a region has.
+    pub blocks_per_border: usize,
+}
+
+impl Default for Worth {
+    fn default() -> Self {
+        Self { springs: 65_536, blocks_per_border: 4 }
+    }
+}
+
+/// The points of a model in the hidden order, packed springs, and the threads that step them.
+#[derive(Debug)]
+pub(crate) struct Team {
+    plan: Arc<Plan>,
+    laws: Arc<Laws>,
+    level: Checked,
+    worth: Worth,
+    regions: Vec<Mutex<Region>>,
+    /// What regions left for their neighbours at the last step, and where they leave it at the next.
+    borders: [Vec<Mutex<Border>>; 2],
+    /// Whether regions have yet to copy what their neighbours left.
+    are_behind: bool,
+    pushes: Vec<Push>,
+    /// Whether the state that is [kept](Self::keep) is the current one; if not, it is in the regions' other arrays.
+    are_kept_here: bool,
+}
+
+/// A region's points that its neighbours need.
+#[derive(Clone, Debug)]
+struct Border {
+    /// Its first points, where springs of the region before it end.
+    first: Arrays<6>,
+    /// Its last blocks, whose springs may end in the region after it.
+    last: Arrays<6>,
+}
+
+impl Clone for Team {
+    fn clone(&self) -> Self {
+        let regions = self.regions.iter().map(|region| Mutex::new(lock(region).clone())).collect();
+        let borders = self
+            .borders
+            .each_ref()
+            .map(|set| set.iter().map(|border| Mutex::new(lock(border).clone())).collect());
+        Self {
+            plan: self.plan.clone(),
+            laws: self.laws.clone(),
+            level: self.level,
+            worth: self.worth,
+            regions,
+            borders,
+            are_behind: self.are_behind,
+            pushes: self.pushes.clone(),
+            are_kept_here: self.are_kept_here,
+        }
+    }
+}
+
+impl Team {
+    pub fn new(model: &Model, params: &Params) -> Self {
+        let plan = Plan::new(model);
+        let laws = Laws::new(&plan, model, params);
+        let mut team = Self {
+            plan: Arc::new(plan),
+            laws: Arc::new(laws),
+            level: Checked::new(Level::best()),
+            worth: Worth::default(),
+            regions: Vec::new(),
+            borders: [Vec::new(), Vec::new()],
+            are_behind: false,
+            pushes: Vec::new(),
+            are_kept_here: false,
+        };
+        team.divide(1);
+        team.set_masses(model, params);
+        team
+    }
+
+    /// Uses these vector instructions, if the processor has them.
+    pub fn set_level(&mut self, level: Level) {
+        self.level = Checked::new(level);
+    }
+
+    /// Divides models that are too small for it: whatever is divided, the bits are the same.
+    #[cfg(test)]
+    pub(super) fn set_worth(&mut self, worth: Worth) {
+        self.worth = worth;
+    }
+
+    /// How many regions there are now.
+    #[cfg(test)]
+    pub fn region_count(&self) -> usize {
+        self.regions.len()
+    }
+
+    /// Stiffness, damping, rest lengths or cuts have changed.
+    pub fn set_laws(&mut self, model: &Model, params: &Params) {
+        Arc::make_mut(&mut self.laws).fill(&self.plan, model, params);
+    }
+
+    /// Masses or pins have changed.
+    pub fn set_masses(&mut self, model: &Model, params: &Params) {
+        for region in &mut self.regions {
+            let region = own(region);
+            let (first, blocks) = (region.first_block, region.blocks.clone());
+            let [inverse_mass] = region.inverse_mass.all_mut();
+            for place in blocks.start * BLOCK..self.plan.points.min(blocks.end * BLOCK) {
+                inverse_mass[place - first * BLOCK] = params.inverse_mass(model.point_at(place));
+            }
+        }
+    }
+
+    /// One point's mass or pin has changed, or a hand has taken or left it.
+    pub fn set_mass(&mut self, model: &Model, params: &Params, point: usize) {
+        let place = model.place_of(point);
+        let region = own(self.region_of(place));
+        let at = region.index(place);
+        let [inverse_mass] = region.inverse_mass.all_mut();
+        inverse_mass[at] = params.inverse_mass(point);
+    }
+
+    /// Takes over positions and velocities.
+    pub fn load(&mut self, model: &Model, state: &State) {
+        for region in &mut self.regions {
+            let region = own(region);
+            if self.are_kept_here {
+                region.swap();
+            }
+            let first = region.first_block * BLOCK;
+            let places = first..self.plan.points.min(first + region.points.len());
+            write(
+                &mut region.points,
+                places.clone().map(|place| {
+                    let point = model.point_at(place);
+                    [state.position[point], state.velocity[point]]
+                }),
+            );
+            write(
+                &mut region.low,
+                places.map(|place| {
+                    let point = model.point_at(place);
+                    [state.position_low[point], state.velocity_low[point]]
+                }),
+            );
+        }
+        (self.are_behind, self.are_kept_here) = (false, false);
+    }
+
+    /// Hands out positions and velocities, in the user's order.
+    pub fn store(&self, model: &Model, state: &mut State) {
+        for region in &self.regions {
+            let region = lock(region);
+            self.hand_out(model, &region, [&region.points, &region.low], state);
+        }
+    }
+
+    /// Keeps positions and velocities of now, in place of those kept before. Nothing is copied: the next step leaves them where
+    /// they are and moves the points in other arrays. Takes memory only where the points have been divided anew since.
+    pub fn keep(&mut self) {
+        self.regions.iter_mut().for_each(|region| own(region).prepare_to_keep());
+        self.are_kept_here = true;
+    }
+
+    /// Hands out the positions and velocities that were kept last, in the user's order; zeros if none were.
+    pub fn store_kept(&self, model: &Model, state: &mut State) {
+        for region in &self.regions {
+            let region = lock(region);
+            let here = [&region.points, &region.low];
+            let there = region.other.as_ref().map(|other| other.each_ref());
+            if let Some(arrays) = if self.are_kept_here { Some(here) } else { there } {
+                self.hand_out(model, &region, arrays, state);
+            }
+        }
+    }
+
+    /// The energies of this state, with a bound on how far they are off; the same bits for any number of threads.
+    pub fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
+        let Self { plan, laws, level, regions, borders, are_behind, .. } = self;
+        let (gravity, planes) = (params.gravity, &params.planes[..]);
+        for_each(regions.len(), workers, &|index| {
+            let mut region = lock(&regions[index]);
+            if *are_behind {
+                receive(&mut region, &borders[0], index);
+            }
+            level.run(Survey { region: &mut region, plan, laws, gravity, planes });
+        });
+        *are_behind = false;
+        let mut sums = Sums::default();
+        for region in &mut *regions {
+            own(region).energies.iter().for_each(|block| sums.add(block));
+        }
+        for (loose, &law) in plan.loose.iter().zip(&laws.loose) {
+            // Loose springs end anywhere: there is one region then, which has all points.
+            let [x, y, z, ..] = own(&mut regions[0]).points.all();
+            sums.add_spring(
+                law,
+                loose.ends.map(|place| place as usize).map(|at| Vec3::new(x[at], y[at], z[at])),
+            );
+        }
+        Screen::new(sums, laws.norms, plan)
+    }
+
+    /// Position and velocity of one point in float64, with what rounding dropped.
+    pub fn motion64(&self, model: &Model, point: usize) -> [DVec3; 2] {
+        let place = model.place_of(point);
+        let region = lock(&self.regions[self.region_index(place)]);
+        let at = region.index(place);
+        let [x, y, z, u, v, w] = std::array::from_fn(|part| {
+            f64::from(region.points.all()[part][at]) + f64::from(region.low.all()[part][at])
+        });
+        [DVec3::new(x, y, z), DVec3::new(u, v, w)]
+    }
+
+    /// Takes up to so many steps, and stops after one that leaves a position that is not finite. Returns how many it took and
+    /// whether all positions are finite.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        params: &Params,
+        steps: u64,
+        workers: &dyn Workers,
+    ) -> (u64, bool) {
+        if self.wanted_regions(workers.count()) != self.regions.len() {
+            self.redivide(model, params, workers.count());
+        }
+        match (1..=steps).find(|_| !self.step(model, params, workers)) {
+            Some(failed) => (failed, false),
+            None => (steps, true),
+        }
+    }
+
+    fn step(&mut self, model: &Model, params: &Params, workers: &dyn Workers) -> bool {
+        self.gather_pushes(model, params);
+        let Self { plan, laws, level, regions, borders, are_behind, pushes, are_kept_here, .. } = self;
+        let field = Field { gravity: params.gravity, planes: &params.planes, dt: params.dt as f32 };
+        let [left, leave] = &*borders;
+        let sweep = |index: usize| {
+            let mut region = lock(&regions[index]);
+            if *are_behind {
+                receive(&mut region, left, index);
+            }
+            let purpose = if *are_kept_here { Purpose::MoveAway } else { Purpose::Move };
+            let finite = level.run(Sweep { region: &mut region, plan, laws, field, pushes, purpose });
+            if *are_kept_here {
+                region.swap();
+            }
+            if regions.len() > 1 {
+                lock(&leave[index]).take(&region);
+            }
+            finite
+        };
+        let finite = AtomicBool::new(true);
+        for_each(regions.len(), workers, &|index| {
+            if !sweep(index) {
+                finite.store(false, Ordering::Relaxed);
+            }
+        });
+        let finite = finite.into_inner();
+        self.borders.swap(0, 1);
+        self.are_behind = self.regions.len() > 1;
+        self.are_kept_here = false;
+        finite
+    }
+
+    /// The force on each point at this state, N, in the user's order, as the next step would use it, weight included.
+    pub fn forces(&mut self, model: &Model, params: &Params, into: &mut Vec<Vec3>) {
+        self.gather_pushes(model, params);
+        into.clear();
+        into.resize(self.plan.points, Vec3::ZERO);
+        let field = Field { gravity: params.gravity, planes: &params.planes, dt: params.dt as f32 };
+        let mut forces = Vec::new();
+        for index in 0..self.regions.len() {
+            let mut region = lock(&self.regions[index]);
+            if self.are_behind {
+                receive(&mut region, &self.borders[0], index);
+            }
+            let places = region.blocks.start * BLOCK..self.plan.points.min(region.blocks.end * BLOCK);
+            forces.resize(places.len(), Vec3::ZERO);
+            self.level.run(Sweep {
+                region: &mut region,
+                plan: &self.plan,
+                laws: &self.laws,
+                field,
+                pushes: &self.pushes,
+                purpose: Purpose::Forces(&mut forces),
+            });
+            for (place, force) in places.zip(&forces) {
+                let point = model.point_at(place);
+                into[point] = *force + params.gravity * params.point_mass[point];
+            }
+        }
+        self.are_behind = false;
+    }
+
+    /// The forces on single points, by place.
+    fn gather_pushes(&mut self, model: &Model, params: &Params) {
+        let Self { plan, laws, pushes, .. } = self;
+        pushes.clear();
+        for (loose, &law) in plan.loose.iter().zip(&laws.loose) {
+            // Loose springs end anywhere: there is one region then, which has all points.
+            let region = own(&mut self.regions[0]);
+            let motion = loose.ends.map(|place| {
+                let [x, y, z, u, v, w] = region.points.all().map(|array| array[place as usize]);
+                [Vec3::new(x, y, z), Vec3::new(u, v, w)]
+            });
+            let force = pull(law, motion);
+            for (place, force) in loose.ends.into_iter().zip([force, -force]) {
+                pushes.push(Push { place: place as usize, kind: PushKind::Constant(force) });
+            }
+        }
+        for (&point, &force) in &params.external_forces {
+            pushes.push(Push { place: model.place_of(point), kind: PushKind::Constant(force) });
+        }
+        for grab in &params.grabs {
+            let Grab { point, target, stiffness, damping } = *grab;
+            let kind = PushKind::Grab { target, stiffness, damping };
+            pushes.push(Push { place: model.place_of(point), kind });
+        }
+        pushes.sort_by_key(|push| push.place);
+    }
+
+    /// How many regions so many threads are best given.
+    fn wanted_regions(&self, threads: usize) -> usize {
+        if !self.plan.loose.is_empty() {
+            return 1;
+        }
+        let Worth { springs, blocks_per_border } = self.worth;
+        let by_blocks = self.plan.blocks.len() / (blocks_per_border * self.plan.border_blocks()).max(1);
+        threads.min(self.plan.springs / springs).min(by_blocks).max(1)
+    }
+
+    fn redivide(&mut self, model: &Model, params: &Params, threads: usize) {
+        let zeros = vec![Vec3::ZERO; self.plan.points];
+        let mut state = State::new(zeros.clone(), zeros);
+        let is_kept_there = !self.are_kept_here && own(&mut self.regions[0]).other.is_some();
+        let kept = is_kept_there.then(|| {
+            let mut kept = state.clone();
+            self.store_kept(model, &mut kept);
+            kept
+        });
+        self.store(model, &mut state);
+        let are_kept_here = self.are_kept_here;
+        self.divide(threads);
+        self.set_masses(model, params);
+        if let Some(kept) = kept {
+            self.load(model, &kept);
+            self.keep();
+        }
+        self.load(model, &state);
+        if are_kept_here {
+            self.keep();
+        }
+    }
+
+    /// Hands out a region's own points from these arrays, in the user's order.
+    fn hand_out(&self, model: &Model, region: &Region, arrays: [&Arrays<6>; 2], state: &mut State) {
+        let [high, low] = arrays.map(Arrays::all);
+        for place in region.blocks.start * BLOCK..self.plan.points.min(region.blocks.end * BLOCK) {
+            let (at, point) = (region.index(place), model.point_at(place));
+            let [x, y, z, u, v, w] = high.map(|array| array[at]);
+            (state.position[point], state.velocity[point]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
+            let [x, y, z, u, v, w] = low.map(|array| array[at]);
+            (state.position_low[point], state.velocity_low[point]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
+        }
+    }
+
+    /// Divides the points into regions of about the same work.
+    fn divide(&mut self, threads: usize) {
+        let (count, blocks) = (self.wanted_regions(threads), self.plan.blocks.len());
+        let border = if count > 1 { self.plan.border_blocks() } else { 0 };
+        // All but the first sweep their neighbour's last blocks as well.
+        let work = blocks + (count - 1) * border;
+        let end = |region: usize| match region {
+            0 => 0,
+            _ if region == count => blocks,
+            _ => (work * region / count - (region - 1) * border).next_multiple_of(GROUP),
+        };
+        let ranges = (0..count).map(|region| end(region)..end(region + 1));
+        self.regions = ranges.map(|blocks| Mutex::new(Region::new(&self.plan, blocks))).collect();
+        let borders = || {
+            let border = Border { first: Arrays::new(self.plan.reach), last: Arrays::new(border * BLOCK) };
+            if count > 1 { vec![border; count].into_iter().map(Mutex::new).collect() } else { Vec::new() }
+        };
+        self.borders = [borders(), borders()];
+        (self.are_behind, self.are_kept_here) = (false, false);
+    }
+
+    fn region_index(&self, place: usize) -> usize {
+        self.regions.partition_point(|region| lock(region).blocks.end * BLOCK <= place)
+    }
+
+    fn region_of(&mut self, place: usize) -> &mut Mutex<Region> {
+        let index = self.region_index(place);
+        &mut self.regions[index]
+    }
+}
+
+impl Border {
+    /// Copies what a region's neighbours need of it.
+    fn take(&mut self, region: &Region) {
+        let begin = (region.blocks.start - region.first_block) * BLOCK;
+        let end = (region.blocks.end - region.first_block) * BLOCK;
+        for (points, first) in region.points.all().into_iter().zip(self.first.all_mut()) {
+            first.copy_from_slice(&points[begin..begin + first.len()]);
+        }
+        for (points, last) in region.points.all().into_iter().zip(self.last.all_mut()) {
+            last.copy_from_slice(&points[end - last.len()..end]);
+        }
+    }
+}
+
+/// Does something for each of so many regions, on the threads that there are.
+fn for_each(regions: usize, workers: &dyn Workers, job: &(dyn Fn(usize) + Sync)) {
+    if regions == 1 {
+        return job(0);
+    }
+    let threads = workers.count();
+    workers.run(&|worker| (worker..regions).step_by(threads).for_each(job));
+}
+
+/// Copies what a region's neighbours left for it.
+fn receive(region: &mut Region, borders: &[Mutex<Border>], index: usize) {
+    let end = (region.blocks.end - region.first_block) * BLOCK;
+    let before = (region.blocks.start - region.first_block) * BLOCK;
+    if let Some(index) = index.checked_sub(1) {
+        let border = lock(&borders[index]);
+        for (points, last) in region.points.all_mut().into_iter().zip(border.last.all()) {
+            points[..before].copy_from_slice(&last[last.len() - before..]);
+        }
+    }
+    if let Some(border) = borders.get(index + 1) {
+        let border = lock(border);
+        for (points, first) in region.points.all_mut().into_iter().zip(border.first.all()) {
+            points[end..end + first.len()].copy_from_slice(first);
+        }
+    }
+}
+
+/// The force on the first end of one spring, N, by the formula of [`super::spring`].
+fn pull([stiffness, damping, rest_length]: [f32; 3], [[x_i, v_i], [x_j, v_j]]: [[Vec3; 2]; 2]) -> Vec3 {
+    let (axis, apart) = (x_i - x_j, v_i - v_j);
+    let squared = math::dot(axis, axis);
+    let length = if squared > COINCIDENT_SQUARED { squared } else { COINCIDENT_SQUARED }.sqrt();
+    let inverse = 1.0 / length;
+    let speed = math::dot(apart, axis) * inverse;
+    axis * -((stiffness * (length - rest_length) + damping * speed) * inverse)
+}
+
+/// Writes pairs of vectors, the first three arrays and the last three.
+fn write(arrays: &mut Arrays<6>, vectors: impl Iterator<Item = [Vec3; 2]>) {
+    let mut arrays = arrays.all_mut();
+    for (at, [a, b]) in vectors.enumerate() {
+        for (array, value) in arrays.iter_mut().zip([a.x, a.y, a.z, b.x, b.y, b.z]) {
+            array[at] = value;
+        }
+    }
+}
+
+/// A lock that is never waited for; if another thread panicked meanwhile, what it left is overwritten anyway.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What is in a lock that nobody else can hold.
+fn own<T>(mutex: &mut Mutex<T>) -> &mut T {
+    mutex.get_mut().unwrap_or_else(PoisonError::into_inner)
+}
