@@ -92,13 +92,14 @@ impl Current {
 
     /// The step it is at, and its time, s.
     pub fn now(&self) -> (u64, f64) {
-        match self.state.get() {
-            Some(state) => (state.step, state.time),
-            None => {
-                let behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
-                behind.as_ref().map_or((0, 0.0), |state| (state.step, state.time))
-            }
+        if let Some(state) = self.state.get() {
+            return (state.step, state.time);
         }
+        let behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = behind.as_ref().map(|state| (state.step, state.time));
+        drop(behind);
+        // Neither here nor there: another thread is just copying it out.
+        now.unwrap_or_else(|| (self.state().step, self.state().time))
     }
 
     /// The step it is at.

@@ -14,6 +14,11 @@ pub(crate) fn without_negligible(position: Vec3) -> Vec3 {
     Vec3::from_array(position.to_array().map(|value| if value.abs() < NEGLIGIBLE { 0.0 } else { value }))
 }
 
+/// A vector without denormal components, which hosts treat differently.
+pub(crate) fn without_subnormals(vector: Vec3) -> Vec3 {
+    Vec3::from_array(vector.to_array().map(|value| if value.is_subnormal() { 0.0 } else { value }))
+}
+
 /// a.x·b.x + a.y·b.y + a.z·b.z, summed from left to right.
 #[inline(always)]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {

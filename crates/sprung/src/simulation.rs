@@ -9,7 +9,7 @@ use crate::current::Current;
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
 use crate::history::{self, Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
-use crate::math::without_negligible;
+use crate::math::{without_negligible, without_subnormals};
 use crate::model::Model;
 use crate::params::{Change, Params, check_vectors};
 use crate::settle::{SettleOptions, Settled};
@@ -17,6 +17,9 @@ use crate::solver::SymplecticEuler;
 use crate::state::{Snapshot, State};
 use crate::watch::{self, Watch};
 use crate::workers::{Inline, Workers};
+
+/// The step that a state may be at when a run begins: whole numbers up to here are exact in float64.
+const MOST_STEPS: u64 = 1 << 53;
 
 /// Steps between two calls of the progress of settling.
 const STEPS_TO_PROGRESS: u64 = 64;
@@ -106,6 +109,7 @@ impl Simulation {
 
     /// Goes on from what has been checked.
     fn begin(model: Arc<Model>, params: Params, mut state: State) -> Self {
+        state.drop_subnormals();
         state.check_clock(params.dt);
         let params = Arc::new(params);
         let start = Arc::new(Checkpoint { state: state.clone(), params: params.clone() });
@@ -142,9 +146,16 @@ impl Simulation {
     /// the user's order only when somebody asks for them.
     ///
     /// # Errors
-    /// [`Code::BlewUp`] if the run blows up: the last good state is then the current one.
+    /// [`Code::BlewUp`] if the run blows up: the last good state is then the current one. [`Code::OutOfRange`] for more steps
+    /// than can be counted.
     pub fn steps(&mut self, count: u64) -> Result<()> {
-        let target = self.current.step() + count;
+        let Some(target) = self.current.step().checked_add(count) else {
+            let sentence = format!("{count} more steps are more than can be counted");
+            return Err(Error::new(Code::OutOfRange, sentence).at_field("count"));
+        };
+        if count == 0 {
+            return Ok(());
+        }
         self.history.branch_at(self.current.step());
         while self.current.step() < target {
             self.advance(target - self.current.step())?;
@@ -465,7 +476,10 @@ impl Simulation {
         // The hand takes the point's own energy over, or gives it some.
         hold(&self.params, state, point);
         state.ledger.work_in += energy::around(&self.model, &self.params, state, point) - before;
-        self.current.unpacked().refresh_point(&self.params, point);
+        // If other changes are still to be packed, this will be with them.
+        if self.packed.is_none() {
+            self.current.unpacked().refresh_point(&self.params, point);
+        }
         Ok(())
     }
 
@@ -607,7 +621,8 @@ fn hold_fixed_points(params: &Params, state: &mut State) {
 
 fn hold(params: &Params, state: &mut State, point: usize) {
     if params.is_fixed(point) {
-        state.velocity[point] = params.carried.get(&point).copied().unwrap_or_default();
+        let carried = params.carried.get(&point).copied().unwrap_or_default();
+        state.velocity[point] = without_subnormals(carried);
         state.velocity_low[point] = Vec3::ZERO;
     }
 }
@@ -649,5 +664,26 @@ fn check_state(model: &Model, state: &State) -> Result<()> {
         }
         check_vectors(field, array)?;
     }
-    Ok(())
+    let LedgerSums { start, work_in, lost_in_dampers, lost_in_contact, integrator_error, suspect_steps } =
+        state.ledger;
+    let numbers = [
+        ("time", state.time),
+        ("ledger.start", start),
+        ("ledger.work_in", work_in),
+        ("ledger.lost_in_dampers", lost_in_dampers),
+        ("ledger.lost_in_contact", lost_in_contact),
+        ("ledger.integrator_error", integrator_error),
+    ];
+    if let Some((field, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+        let sentence = format!("is {value}, and must be a finite number");
+        return Err(Error::new(Code::OutOfRange, sentence).at_field(field));
+    }
+    let counts = [("step", state.step), ("ledger.suspect_steps", suspect_steps)];
+    match counts.into_iter().find(|(_, count)| *count > MOST_STEPS) {
+        None => Ok(()),
+        Some((field, count)) => {
+            let sentence = format!("is {count}, and must be at most {MOST_STEPS}");
+            Err(Error::new(Code::OutOfRange, sentence).at_field(field))
+        }
+    }
 }

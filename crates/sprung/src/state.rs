@@ -4,6 +4,7 @@ use bytemuck::zeroed_vec;
 use glam::{DVec3, Vec3};
 
 use crate::energy::LedgerSums;
+use crate::math::without_subnormals;
 
 /// All that a step changes. Arrays have one entry per point of the [`Model`](crate::Model), in the user's order.
 ///
@@ -81,6 +82,16 @@ impl State {
         let Self { step, time, ledger, clock, .. } = *counters;
         let zeros = vec![Vec3::ZERO; points];
         Self { step, time, ledger, clock, ..Self::new(zeros.clone(), zeros) }
+    }
+
+    /// Takes out denormal numbers, which no step leaves behind. Writes only where there is one.
+    pub(crate) fn drop_subnormals(&mut self) {
+        let Self { position, position_low, velocity, velocity_low, .. } = self;
+        for vector in [position, position_low, velocity, velocity_low].into_iter().flatten() {
+            if vector.to_array().iter().any(|value| value.is_subnormal()) {
+                *vector = without_subnormals(*vector);
+            }
+        }
     }
 
     /// One step of `dt` (s) has passed.

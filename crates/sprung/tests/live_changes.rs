@@ -85,3 +85,30 @@ fn after_any_changes_a_run_is_where_a_new_one_would_be() {
         }
     }
 }
+
+/// A hand takes a point while other changes wait to be packed, and then time goes back to before it came.
+#[test]
+fn a_hand_is_forgotten_when_time_goes_back() {
+    let mut fresh = scenes::engine(&scenes::cloth());
+    common::steps(&mut fresh, 80);
+
+    let mut run = scenes::engine(&scenes::cloth());
+    run.change(Change::Gravity(Vec3::X)).expect("allowed");
+    run.change(Change::Carry(5, Some(Vec3::Y))).expect("allowed");
+    run.reset();
+    common::steps(&mut run, 80);
+    assert_same_bits(run.state(), fresh.state(), "after a reset");
+
+    let mut run = scenes::engine(&scenes::cloth());
+    common::steps(&mut run, 80);
+    run.rewind_to(10).expect("it is recorded");
+    run.change(Change::Carry(5, Some(Vec3::Y))).expect("allowed");
+    common::steps(&mut run, 20);
+    run.change(Change::Carry(5, None)).expect("allowed");
+    common::steps(&mut run, 100);
+    let mut again = run.clone();
+    for step in [0, 130, 20, 75, 130] {
+        again.rewind_to(step).expect("it is recorded");
+    }
+    assert_same_bits(again.state(), run.state(), "after going to and fro");
+}

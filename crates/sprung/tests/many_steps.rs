@@ -173,3 +173,43 @@ proptest! {
         both.rewind(&mut Random(3), "network");
     }
 }
+
+#[test]
+fn no_steps_are_nothing_and_too_many_are_refused() {
+    let mut run = scenes::engine(&scenes::chain());
+    common::steps(&mut run, 100);
+    run.rewind_to(40).expect("it is recorded");
+    run.steps(0).expect("nothing to do");
+    assert_eq!(*run.recorded_steps().end(), 100, "what was recorded stays");
+    let error = run.steps(u64::MAX).expect_err("more than can be counted");
+    assert_eq!(error.code(), sprung::Code::OutOfRange);
+    assert_eq!((run.now().0, *run.recorded_steps().end()), (40, 100));
+}
+
+#[test]
+fn a_state_that_no_run_can_be_at_is_refused() {
+    let run = scenes::engine(&scenes::chain());
+    let refused = |spoil: fn(&mut sprung::State)| {
+        let mut state = run.state().clone();
+        spoil(&mut state);
+        let resumed = sprung::Simulation::resume(run.model().clone(), run.params().clone(), state);
+        resumed.map(|_| ()).expect_err("it cannot be").code()
+    };
+    assert_eq!(refused(|state| state.step = u64::MAX), sprung::Code::OutOfRange);
+    assert_eq!(refused(|state| state.time = f64::NAN), sprung::Code::OutOfRange);
+    assert_eq!(refused(|state| state.ledger.work_in = f64::INFINITY), sprung::Code::OutOfRange);
+    assert_eq!(refused(|state| state.ledger.suspect_steps = u64::MAX), sprung::Code::OutOfRange);
+}
+
+/// Denormal numbers do not come in with a state, not even at a point that never moves.
+#[test]
+fn a_state_is_taken_without_denormal_numbers() {
+    let run = scenes::engine(&scenes::chain());
+    let mut state = run.state().clone();
+    state.position_low[0] = Vec3::splat(1e-40);
+    state.velocity[3].x = -1e-41;
+    let resumed = sprung::Simulation::resume(run.model().clone(), run.params().clone(), state);
+    let resumed = resumed.expect("it is allowed");
+    let (low, velocity) = (resumed.state().position_low[0], resumed.state().velocity[3].x);
+    assert_eq!((low, velocity), (Vec3::ZERO, 0.0));
+}

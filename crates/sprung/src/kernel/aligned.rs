@@ -14,7 +14,7 @@ pub(super) struct Arrays<const N: usize> {
 
 impl<const N: usize> Arrays<N> {
     pub fn new(len: usize) -> Self {
-        // Five lines more than needed: arrays a multiple of 4096 bytes apart would compete for the same lines of the cache.
+        // Some lines more than needed: arrays a multiple of 4096 bytes apart would compete for the same lines of the cache.
         let stride = len.next_multiple_of(LINE) + 23 * LINE;
         let buffer = vec![0.0; N * stride + LINE];
         let start = buffer.as_ptr().align_offset(LINE * size_of::<f32>()).min(LINE);

@@ -30,7 +30,7 @@ use super::level::Work;
 use super::packed::{gather, window};
 use super::plan::{Bundle, Plan};
 use super::region::Region;
-use super::spring::{LawLanes, Values};
+use super::spring::{LawLanes, OneOrEach};
 use super::stripe::{SETS, block};
 use super::{BLOCK, LANES, Lanes, six};
 use crate::contact::Plane;
@@ -165,7 +165,12 @@ impl Survey<'_> {
             for (set, row) in rows.clone().enumerate() {
                 let far = windows.map(|array| gather(array, &plan.rows[row]));
                 let squared = squared_lengths(near.each_ref(), far.each_ref());
-                add_stretch(&mut sum, &squared, laws.values.lanes(&laws.bundles[bundle], set), u32::MAX);
+                add_stretch(
+                    &mut sum,
+                    &squared,
+                    laws.values.lanes(&laws.bundles[bundle], set),
+                    laws.rows[row],
+                );
             }
         }
         total(sum)
@@ -260,7 +265,7 @@ fn squared_lengths(near: [&Lanes; 3], far: [&Lanes; 3]) -> Lanes {
 #[inline(always)]
 fn add_stretch(sum: &mut Partial, squared: &Lanes, law: LawLanes<'_>, mask: u32) {
     // One loop for each kind of law: the choice is made out here.
-    use Values::{Each, Same};
+    use OneOrEach::{Each, Same};
     let energy = match (law.stiffness, law.rest_length) {
         (Same(k), Same(rest)) => stretch(squared, mask, |_| (k, rest)),
         (Same(k), Each(rest)) => stretch(squared, mask, |lane| (k, rest[lane])),

@@ -3,8 +3,8 @@
 
 use super::energy::Norms;
 use super::plan::Plan;
-use super::spring::{LawLanes, Values as OneOrEach};
-use super::stripe::Mask;
+use super::spring::{LawLanes, OneOrEach};
+use super::stripe::{Block, Mask, SETS};
 use super::{BLOCK, LANES, Lanes};
 use crate::model::Model;
 use crate::params::Params;
@@ -32,8 +32,10 @@ pub(crate) struct Laws {
     /// Which lanes of each stripe are springs that are not cut.
     pub masks: Vec<Mask>,
     pub bundles: Vec<Law>,
-    /// k_s, k_d and L of the loose springs.
-    pub loose: Vec<[f32; 3]>,
+    /// Which lanes of each row are springs that are not cut.
+    pub rows: Vec<u32>,
+    /// k_s, k_d and L of the loose springs; none if it is cut.
+    pub loose: Vec<Option<[f32; 3]>>,
     pub norms: Norms,
 }
 
@@ -46,28 +48,28 @@ impl Laws {
 
     /// Packs them anew, into the memory that is there.
     pub fn fill(&mut self, plan: &Plan, model: &Model, params: &Params) {
-        let Self { values, stripes, masks, bundles, loose, norms } = self;
+        let Self { values, stripes, masks, bundles, rows, loose, norms } = self;
         values.0.clear();
         stripes.clear();
         masks.clear();
         bundles.clear();
+        rows.clear();
         loose.clear();
+        let is_live = |spring: &usize| !params.spring_cut[*spring];
         let law_of = |spring: usize| {
-            let k = if params.spring_cut[spring] { 0.0 } else { params.spring_stiffness[spring] };
-            let d = if params.spring_cut[spring] { 0.0 } else { params.spring_damping[spring] };
+            let (k, d) = (params.spring_stiffness[spring], params.spring_damping[spring]);
             [k, d, params.spring_rest_length[spring]]
         };
         for stripe in &plan.stripes {
             let springs = plan.springs_of(stripe);
             let mut mask = Mask::default();
             let place = |spring: u32| model.places(spring)[0] as usize % BLOCK;
-            for &spring in springs.iter().filter(|&&spring| !params.spring_cut[spring as usize]) {
-                let place = place(spring);
+            let live = || springs.iter().map(|&spring| spring as usize).filter(is_live);
+            for spring in live() {
+                let place = place(spring as u32);
                 mask[place / LANES] |= 1 << (place % LANES);
             }
             masks.push(mask);
-            let live =
-                || springs.iter().map(|&spring| spring as usize).filter(|&spring| !params.spring_cut[spring]);
             let shared = Shared::of(live().map(law_of));
             let law = values.push(shared, BLOCK / LANES, |put| {
                 live().for_each(|spring| put(place(spring as u32), law_of(spring)));
@@ -75,11 +77,16 @@ impl Laws {
             stripes.push(law);
         }
         for bundle in &plan.bundles {
-            let rows = || bundle.rows.clone().map(|row| plan.springs_in_row(row));
-            let shared = Shared::of(rows().flatten().flatten().map(law_of));
-            // A lane to spare has length and rest length zero, and so no force, whatever its stiffness.
-            let law = values.push(shared.without_same_length(), bundle.rows.len(), |put| {
-                for (row, springs) in rows().enumerate() {
+            let live_rows = || {
+                bundle.rows.clone().map(|row| plan.springs_in_row(row).map(|spring| spring.filter(is_live)))
+            };
+            for springs in live_rows() {
+                let bit = |(lane, spring): (usize, &Option<usize>)| u32::from(spring.is_some()) << lane;
+                rows.push(springs.iter().enumerate().map(bit).sum());
+            }
+            let shared = Shared::of(live_rows().flatten().flatten().map(law_of));
+            let law = values.push(shared, bundle.rows.len(), |put| {
+                for (row, springs) in live_rows().enumerate() {
                     for (lane, spring) in springs.into_iter().enumerate() {
                         put(row * LANES + lane, spring.map_or([0.0; 3], law_of));
                     }
@@ -87,9 +94,9 @@ impl Laws {
             });
             bundles.push(law);
         }
-        loose.extend(plan.loose.iter().map(|loose| law_of(loose.spring as usize)));
+        loose.extend(plan.loose.iter().map(|loose| Some(loose.spring as usize).filter(is_live).map(law_of)));
         *norms = Norms::default();
-        for [k, _, rest] in (0..plan.springs).map(law_of) {
+        for [k, _, rest] in (0..plan.springs).filter(is_live).map(law_of) {
             let (half, rest) = (0.5 * f64::from(k), f64::from(rest));
             norms.ones += half;
             norms.rest_lengths += half * rest * rest;
@@ -113,10 +120,6 @@ impl Shared {
             shared.length &= rest == law[2];
         }
         shared
-    }
-
-    fn without_same_length(self) -> Self {
-        Self { length: false, ..self }
     }
 }
 
@@ -147,6 +150,19 @@ impl Values {
                 Law::Each(first as u32)
             }
         }
+    }
+
+    /// The sets of lanes of a stripe.
+    #[inline(always)]
+    pub fn block(&self, first: u32) -> &Block {
+        self.0[first as usize..].first_chunk().expect("a stripe has a value for each point of its block")
+    }
+
+    /// The same of k_s, k_d and L in turn.
+    #[inline(always)]
+    pub fn block_of_three(&self, first: u32) -> &[[Lanes; 3]; SETS] {
+        let threes = self.0[first as usize..].as_chunks().0;
+        threes.first_chunk().expect("a stripe has three values for each point of its block")
     }
 
     /// The laws of one set of lanes of a stripe, or of one row of a bundle.

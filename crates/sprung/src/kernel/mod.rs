@@ -59,6 +59,10 @@ const LANES: usize = 32;
 /// A value for each of the springs that go through together, or of so many points.
 type Lanes = [f32; LANES];
 
+// A bit of 32 for each lane; a group within a window.
+const _: () =
+    assert!(LANES == u32::BITS as usize && BLOCK.is_multiple_of(LANES) && GROUP * BLOCK < plan::WINDOW);
+
 /// `[T; 6]::map`, of which the compiler makes vector code: positions and velocities go by six.
 #[inline(always)]
 fn six<T, U>([a, b, c, d, e, f]: [T; 6], with: impl Fn(T) -> U) -> [U; 6] {

@@ -1,7 +1,7 @@
 //! Springs between any two points: both ends are gathered, each spring once.
 
-use super::laws::{Law, Values};
-use super::plan::{Bundle, Plan, WINDOW};
+use super::laws::Laws;
+use super::plan::{Plan, WINDOW};
 use super::spring::{SpringLanes, add};
 use super::{LANES, Lanes, six};
 
@@ -16,12 +16,12 @@ pub(super) type Force = [f32; 4];
 pub(super) fn accumulate(
     points: [&[f32]; 6],
     plan: &Plan,
-    bundle: &Bundle,
-    law: &Law,
-    values: &Values,
+    laws: &Laws,
+    bundle: usize,
     forces: &mut [Force],
     springs: &mut SpringLanes,
 ) {
+    let (bundle, law) = (&plan.bundles[bundle], &laws.bundles[bundle]);
     // A 16-bit number is always an index into an array of this length: nothing is left to be checked for each lane.
     let window = six(points, window);
     let forces: &mut [Force; WINDOW] = forces.first_chunk_mut().expect("forces end with a window to spare");
@@ -32,7 +32,7 @@ pub(super) fn accumulate(
         let there = six(window, |array| gather(array, ends));
         springs
             .fetch(six([0, 1, 2, 3, 4, 5], |part| &here[part]), six([0, 1, 2, 3, 4, 5], |part| &there[part]));
-        springs.pull(values.lanes(law, set), u32::MAX);
+        springs.pull(laws.values.lanes(law, set), laws.rows[row]);
         let [x, y, z] = [springs.force(0), springs.force(1), springs.force(2)];
         add(&mut sums[0], &x);
         add(&mut sums[1], &y);

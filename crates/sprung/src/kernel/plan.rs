@@ -57,7 +57,7 @@ pub(super) struct Stripe {
     springs: Range<usize>,
 }
 
-/// Packed springs of 64 points of one group, which need not be different points nor in order: each point is a lane, and each
+/// Packed springs of a set of lanes of points of one group, which need not be different points nor in order: each point is a lane, and each
 /// row holds one spring of each.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle {

@@ -6,14 +6,14 @@ use crate::math::COINCIDENT_SQUARED;
 /// What the force of springs depends on besides their ends.
 #[derive(Clone, Copy)]
 pub(super) struct LawLanes<'a> {
-    pub stiffness: Values<'a>,
-    pub damping: Values<'a>,
-    pub rest_length: Values<'a>,
+    pub stiffness: OneOrEach<'a>,
+    pub damping: OneOrEach<'a>,
+    pub rest_length: OneOrEach<'a>,
 }
 
 /// One value for all lanes, or one for each.
 #[derive(Clone, Copy)]
-pub(super) enum Values<'a> {
+pub(super) enum OneOrEach<'a> {
     Same(f32),
     Each(&'a Lanes),
 }
@@ -61,7 +61,7 @@ impl SpringLanes {
     #[inline(always)]
     pub fn pull(&mut self, law: LawLanes<'_>, mask: u32) {
         // One loop for each kind of law: the choice is made out here.
-        use Values::{Each, Same};
+        use OneOrEach::{Each, Same};
         match (law.stiffness, law.damping, law.rest_length) {
             (Same(k), Same(d), Same(rest)) => self.tension(mask, |_| (k, d, rest)),
             (Same(k), Same(d), Each(rest)) => self.tension(mask, |lane| (k, d, rest[lane])),
@@ -92,8 +92,9 @@ impl SpringLanes {
         force
     }
 
+    /// As [`pull`](Self::pull), for the law (k_s, k_d, L) of each lane.
     #[inline(always)]
-    fn tension(&mut self, mask: u32, law: impl Fn(usize) -> (f32, f32, f32)) {
+    pub fn tension(&mut self, mask: u32, law: impl Fn(usize) -> (f32, f32, f32)) {
         for lane in 0..LANES {
             let (stiffness, damping, rest_length) = law(lane);
             let squared = self.length_squared[lane];
@@ -108,7 +109,7 @@ impl SpringLanes {
     }
 }
 
-impl Values<'_> {
+impl OneOrEach<'_> {
     #[inline(always)]
     fn at(self, lane: usize) -> f32 {
         match self {

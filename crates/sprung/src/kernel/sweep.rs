@@ -95,9 +95,8 @@ impl Sweep<'_> {
             stripe::accumulate(ends, &laws.masks[index], &laws.stripes[index], &laws.values, springs);
         }
         for index in block.bundles.clone() {
-            let (bundle, law) = (&plan.bundles[index], &laws.bundles[index]);
             let forces = &mut forces.packed[far_at..];
-            packed::accumulate(points, plan, bundle, law, &laws.values, forces, springs);
+            packed::accumulate(points, plan, laws, index, forces, springs);
         }
     }
 

@@ -191,7 +191,7 @@ impl Team {
         self.are_kept_here = true;
     }
 
-    /// Hands out the positions and velocities that were kept last, in the user's order; zeros if none were.
+    /// Hands out the positions and velocities that were kept last, in the user's order; leaves the state as it is if none were.
     pub fn store_kept(&self, model: &Model, state: &mut State) {
         for region in &self.regions {
             let region = lock(region);
@@ -219,7 +219,8 @@ impl Team {
         for region in &mut *regions {
             own(region).energies.iter().for_each(|block| sums.add(block));
         }
-        for (loose, &law) in plan.loose.iter().zip(&laws.loose) {
+        for (loose, law) in plan.loose.iter().zip(&laws.loose) {
+            let Some(law) = *law else { continue };
             // Loose springs end anywhere: there is one region then, which has all points.
             let [x, y, z, ..] = own(&mut regions[0]).points.all();
             sums.add_spring(
@@ -326,7 +327,8 @@ impl Team {
     fn gather_pushes(&mut self, model: &Model, params: &Params) {
         let Self { plan, laws, pushes, .. } = self;
         pushes.clear();
-        for (loose, &law) in plan.loose.iter().zip(&laws.loose) {
+        for (loose, law) in plan.loose.iter().zip(&laws.loose) {
+            let Some(law) = *law else { continue };
             // Loose springs end anywhere: there is one region then, which has all points.
             let region = own(&mut self.regions[0]);
             let motion = loose.ends.map(|place| {
@@ -444,7 +446,7 @@ fn for_each(regions: usize, workers: &dyn Workers, job: &(dyn Fn(usize) + Sync))
     if regions == 1 {
         return job(0);
     }
-    let threads = workers.count();
+    let threads = workers.count().max(1);
     workers.run(&|worker| (worker..regions).step_by(threads).for_each(job));
 }
 
@@ -486,7 +488,7 @@ fn write(arrays: &mut Arrays<6>, vectors: impl Iterator<Item = [Vec3; 2]>) {
     }
 }
 
-/// A lock that is never waited for; if another thread panicked meanwhile, what it left is overwritten anyway.
+/// A lock that is hardly ever waited for. If another thread panicked, so does the caller of the step: nobody reads on.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -76,8 +76,8 @@ impl SymplecticEuler {
     /// Takes up to so many steps of [`Params::dt`], and stops after one that leaves a position that is not finite: the state
     /// is then of no use any more. Returns how many it took, and whether every position is finite.
     ///
-    /// Forces add up in this order: springs (in that of the layout, a function of the model), planes, external forces,
-    /// grabs; divided by the mass, gravity comes last.
+    /// Forces add up in this order: springs (in that of the layout, a function of the model), planes, springs between points
+    /// that lie very far apart in the layout, external forces, grabs; after the division by the mass, gravity.
     pub fn advance(&mut self, params: &Params, steps: u64, workers: &dyn Workers) -> (u64, bool) {
         self.team.advance(&self.model, params, steps, workers)
     }
@@ -123,12 +123,13 @@ impl SymplecticEuler {
         self.team.motion64(&self.model, point)
     }
 
-    /// The largest force on any point that it can move, N.
+    /// The largest force on any point that it can move, N; infinite where a force is not a number.
     pub fn residual_force(&mut self, params: &Params) -> f64 {
         let mut forces = Vec::new();
         self.forces(params, &mut forces);
         let free = forces.iter().enumerate().filter(|&(point, _)| !params.is_fixed(point));
-        free.map(|(_, force)| force.as_dvec3().length()).fold(0.0, f64::max)
+        let sizes = free.map(|(_, force)| force.as_dvec3().length());
+        sizes.map(|size| if size.is_nan() { f64::INFINITY } else { size }).fold(0.0, f64::max)
     }
 
     /// The total force on each point now, N, as the next step would use it, in the user's order.
