@@ -206,6 +206,15 @@ fn help_completions_manual_and_schema_come_from_the_same_definitions() {
 }
 
 #[test]
+fn bench_says_what_is_wrong_before_it_measures() {
+    let folder = tempfile::tempdir().expect("there is a disk");
+    let output = sprung(folder.path(), &["bench", "spring", "nosuch"]);
+    assert_eq!((output.status.code(), &output.stdout[..]), (Some(2), &b""[..]));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("there is no built-in scene \"nosuch\"") && said.lines().count() == 1, "{said}");
+}
+
+#[test]
 fn bench_gives_one_object_per_scene() {
     let folder = TempDir::new().unwrap();
     let output = sprung(folder.path(), &["bench", "spring", "chain", "--json"]);

@@ -47,6 +47,10 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         }
         scenes => scenes.iter().map(String::as_str).collect(),
     };
+    // What is wrong with a scene is said before anything is measured.
+    for scene in &scenes {
+        source::scene(&SceneArgs { scene: (*scene).to_owned(), set: Vec::new() })?;
+    }
     if !args.json {
         say(format_args!(
             "{:<12} {:>9} {:>10} {:>8} {:>8} {:>14} {:>12} {:>9} {:>9}",
