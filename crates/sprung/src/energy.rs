@@ -121,8 +121,8 @@ impl Ledger {
         }
     }
 
-    /// After it: the sums with every force's work booked. `Drives` books what outside forces put in, and has found how much of that a
-    /// carrying hand stored in springs, J.
+    /// After it: the sums with every force's work booked. `Drives` books what outside forces put in, and has found how
+    /// much of that a carrying hand stored in springs, J.
     pub fn end(&mut self, model: &Model, params: &Params, state: &State, stored_by_hand: f64) -> LedgerSums {
         let half_dt = 0.5 * f64::from(params.dt as f32);
         for (point, velocity) in self.velocity.iter_mut().enumerate() {

@@ -3,6 +3,7 @@
 //! A *scene* is built into an immutable [`Model`], its [`Params`] and a first [`State`]; a solver advances the state
 //! under the params; everything else only reads [`Snapshot`]s. Units are SI throughout; the up axis is +Y.
 
+mod buckets;
 pub mod build;
 pub mod contact;
 mod current;

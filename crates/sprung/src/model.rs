@@ -1,6 +1,8 @@
 //! The model: what is joined to what. Immutable once built, shared by every run that uses it.
 
 use std::ops::Range;
+
+use crate::buckets::Buckets;
 use std::sync::{Arc, OnceLock};
 
 /// A named part of a model: a range of its points, and of the springs among them.
@@ -85,11 +87,11 @@ impl Model {
     ///
     /// The table behind it is made when it is first asked for: 8 bytes per spring and per point.
     pub fn springs_at(&self, point: usize) -> &[u32] {
-        let table = self.springs_at.0.get_or_init(|| Incidence::new(self.point_count, &self.springs));
-        match table.starts.get(point..).and_then(|starts| starts.first_chunk()) {
-            Some(&[start, end]) => &table.springs[start..end],
-            None => &[],
-        }
+        let table = self.springs_at.0.get_or_init(|| {
+            let both = |(spring, ends): (usize, &[u32; 2])| ends.map(|end| (end as usize, spring as u32));
+            Buckets::new(self.point_count, self.springs.iter().enumerate().flat_map(both))
+        });
+        if point < self.point_count { table.of(point) } else { &[] }
     }
 
     /// The named bodies; together they hold every point, in order.
@@ -197,39 +199,10 @@ impl HiddenOrder {
 
 /// A table that follows from the rest of the model: two models are equal whether or not they have made it yet.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SpringsAt(OnceLock<Incidence>);
+pub(crate) struct SpringsAt(OnceLock<Buckets<u32>>);
 
 impl PartialEq for SpringsAt {
     fn eq(&self, _: &Self) -> bool {
         true
-    }
-}
-
-/// Springs sorted by point.
-#[derive(Clone, Debug)]
-struct Incidence {
-    /// Where each point's springs begin, and the total at the end.
-    starts: Vec<usize>,
-    springs: Vec<u32>,
-}
-
-impl Incidence {
-    fn new(points: usize, springs: &[[u32; 2]]) -> Self {
-        let mut starts = vec![0usize; points + 1];
-        for &end in springs.iter().flatten() {
-            starts[end as usize + 1] += 1;
-        }
-        for point in 0..points {
-            starts[point + 1] += starts[point];
-        }
-        let mut next = starts.clone();
-        let mut sorted = vec![0u32; 2 * springs.len()];
-        for (spring, ends) in springs.iter().enumerate() {
-            for &end in ends {
-                sorted[next[end as usize]] = spring as u32;
-                next[end as usize] += 1;
-            }
-        }
-        Self { starts, springs: sorted }
     }
 }

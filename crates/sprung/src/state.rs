@@ -73,15 +73,13 @@ impl State {
 
     /// Its step, time and sums, without a point.
     pub(crate) fn counters(&self) -> Self {
-        let Self { step, time, ledger, clock, .. } = *self;
-        Self { step, time, ledger, clock, ..Self::new(Vec::new(), Vec::new()) }
+        Self::at_origin(self, 0)
     }
 
     /// With this step, time and these sums, and so many points at the origin and at rest.
     pub(crate) fn at_origin(counters: &Self, points: usize) -> Self {
         let Self { step, time, ledger, clock, .. } = *counters;
-        let zeros = vec![Vec3::ZERO; points];
-        Self { step, time, ledger, clock, ..Self::new(zeros.clone(), zeros) }
+        Self { step, time, ledger, clock, ..Self::new(zeroed_vec(points), zeroed_vec(points)) }
     }
 
     /// Takes out denormal numbers, which no step leaves behind. Writes only where there is one.

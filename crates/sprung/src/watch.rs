@@ -227,7 +227,7 @@ impl Watch {
         self.good_events
     }
 
-    /// After every step: what blew up, if something did.
+    /// After the steps up to [`steps_to_look`]: what blew up, if something did.
     pub fn look(
         &mut self,
         model: &Model,

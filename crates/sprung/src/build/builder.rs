@@ -283,7 +283,8 @@ impl ModelBuilder {
     /// The finished model, its parameters and its first state.
     ///
     /// The parameters start with standard gravity (0, −9.81, 0) m/s², no plane, one step per frame, and the `dt` that
-    /// [`stability::auto_dt`] chooses (the smallest there is, where none is safe); change them before a [`Simulation`] is made of them.
+    /// [`stability::auto_dt`] chooses (the smallest there is, where none is safe); change them before a [`Simulation`] is made
+    /// of them.
     ///
     /// # Errors
     /// [`Code::Conflict`] for a builder without points.

@@ -30,7 +30,7 @@ use super::level::Work;
 use super::packed::{gather, window};
 use super::plan::{Bundle, Plan};
 use super::region::Region;
-use super::spring::{LawLanes, OneOrEach};
+use super::spring::LawLanes;
 use super::stripe::{SETS, block};
 use super::{BLOCK, LANES, Lanes, six};
 use crate::contact::Plane;
@@ -265,12 +265,10 @@ fn squared_lengths(near: [&Lanes; 3], far: [&Lanes; 3]) -> Lanes {
 #[inline(always)]
 fn add_stretch(sum: &mut Partial, squared: &Lanes, law: LawLanes<'_>, mask: u32) {
     // One loop for each kind of law: the choice is made out here.
-    use OneOrEach::{Each, Same};
-    let energy = match (law.stiffness, law.rest_length) {
-        (Same(k), Same(rest)) => stretch(squared, mask, |_| (k, rest)),
-        (Same(k), Each(rest)) => stretch(squared, mask, |lane| (k, rest[lane])),
-        (Each(k), Same(rest)) => stretch(squared, mask, |lane| (k[lane], rest)),
-        (Each(k), Each(rest)) => stretch(squared, mask, |lane| (k[lane], rest[lane])),
+    let energy = match law {
+        LawLanes::Same([k, _, rest]) => stretch(squared, mask, |_| (k, rest)),
+        LawLanes::Lengths([k, _], rest) => stretch(squared, mask, |lane| (k, rest[lane])),
+        LawLanes::Each([k, _, rest]) => stretch(squared, mask, |lane| (k[lane], rest[lane])),
     };
     for energies in energy.as_chunks::<WAYS>().0 {
         for way in 0..WAYS {

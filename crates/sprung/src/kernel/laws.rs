@@ -3,7 +3,7 @@
 
 use super::energy::Norms;
 use super::plan::Plan;
-use super::spring::{LawLanes, OneOrEach};
+use super::spring::LawLanes;
 use super::stripe::{Block, Mask, SETS};
 use super::{BLOCK, LANES, Lanes};
 use crate::model::Model;
@@ -168,18 +168,12 @@ impl Values {
     /// The laws of one set of lanes of a stripe, or of one row of a bundle.
     #[inline(always)]
     pub fn lanes(&self, law: &Law, set: usize) -> LawLanes<'_> {
-        use OneOrEach::{Each, Same};
+        let at = |first: u32, set: usize| &self.0[first as usize + set];
         match *law {
-            Law::Same([k, d, rest]) => {
-                LawLanes { stiffness: Same(k), damping: Same(d), rest_length: Same(rest) }
-            }
-            Law::Lengths([k, d], first) => {
-                let rest = &self.0[first as usize + set];
-                LawLanes { stiffness: Same(k), damping: Same(d), rest_length: Each(rest) }
-            }
+            Law::Same(law) => LawLanes::Same(law),
+            Law::Lengths(material, first) => LawLanes::Lengths(material, at(first, set)),
             Law::Each(first) => {
-                let [k, d, rest] = [0, 1, 2].map(|part| Each(&self.0[first as usize + 3 * set + part]));
-                LawLanes { stiffness: k, damping: d, rest_length: rest }
+                LawLanes::Each([at(first, 3 * set), at(first, 3 * set + 1), at(first, 3 * set + 2)])
             }
         }
     }

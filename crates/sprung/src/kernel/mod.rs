@@ -10,7 +10,8 @@
 //! - [`packed`]: all other springs, whose far ends are gathered.
 //! - [`laws`]: stiffness, damping and rest length, packed in the order of their use.
 //! - [`integrate`]: gravity, contact and the move of a block's points.
-//! - [`region`]: the points that one thread has, [`sweep`]: the pass through them; [`team`]: all regions, and what they tell each other.
+//! - [`region`]: the points that one thread has; [`sweep`]: the pass through them.
+//! - [`team`]: all regions, and what they tell each other.
 //! - [`energy`]: a pass for the energies alone.
 //! - [`level`]: which vector instructions are used.
 //!

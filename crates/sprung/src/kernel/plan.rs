@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::{BLOCK, GROUP, LANES};
+use crate::buckets::Buckets;
 use crate::model::Model;
 
 /// A stripe takes part in whole sets of lanes, at about two fifths of what as many packed springs cost: it is worth it
@@ -38,8 +39,8 @@ pub(crate) struct Plan {
     row_springs: Vec<[u32; LANES]>,
     /// Springs to points beyond the window.
     pub loose: Vec<Loose>,
-    /// How far beyond the first point of its block (a stripe) or group (a bundle) a spring may end, in places, less what a
-    /// block has.
+    /// The largest offset of a stripe, or for packed springs how far beyond the first point of its group one ends, in places:
+    /// beyond the block where it begins no force reaches further.
     pub reach: usize,
 }
 
@@ -57,8 +58,8 @@ pub(super) struct Stripe {
     springs: Range<usize>,
 }
 
-/// Packed springs of a set of lanes of points of one group, which need not be different points nor in order: each point is a lane, and each
-/// row holds one spring of each.
+/// Packed springs of a set of lanes of points of one group, which need not be different points nor in order: each point is
+/// a lane, and each row holds one spring of each.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle {
     /// From the group's first point.
@@ -99,13 +100,15 @@ impl Plan {
             loose: Vec::new(),
             reach: 0,
         };
-        let sorted = SortedByBlock::new(model, block_count);
+        let block_of = |spring: u32| model.places(spring)[0] as usize / BLOCK;
+        let springs = 0..model.spring_count() as u32;
+        let sorted = Buckets::new(block_count, springs.map(|spring| (block_of(spring), spring)));
         let (mut springs, mut packed) = (Vec::new(), Vec::new());
         for group in (0..block_count).step_by(GROUP) {
             packed.clear();
             for block in group..block_count.min(group + GROUP) {
                 springs.clear();
-                springs.extend(sorted.springs_of(block).iter().map(|&spring| {
+                springs.extend(sorted.of(block).iter().map(|&spring| {
                     let [near, far] = model.places(spring);
                     Planned { offset: far - near, near: near - (block * BLOCK) as u32, spring }
                 }));
@@ -212,36 +215,5 @@ impl Plan {
             }
             self.bundles.push(Bundle { points, rows });
         }
-    }
-}
-
-/// Springs sorted by the block of their first end, each block's in ascending order.
-struct SortedByBlock {
-    starts: Vec<usize>,
-    springs: Vec<u32>,
-}
-
-impl SortedByBlock {
-    fn new(model: &Model, blocks: usize) -> Self {
-        let block_of = |spring: usize| model.places(spring as u32)[0] as usize / BLOCK;
-        let mut starts = vec![0usize; blocks + 1];
-        for spring in 0..model.spring_count() {
-            starts[block_of(spring) + 1] += 1;
-        }
-        for block in 0..blocks {
-            starts[block + 1] += starts[block];
-        }
-        let mut next = starts.clone();
-        let mut springs = vec![0u32; model.spring_count()];
-        for spring in 0..springs.len() {
-            let at = &mut next[block_of(spring)];
-            springs[*at] = spring as u32;
-            *at += 1;
-        }
-        Self { starts, springs }
-    }
-
-    fn springs_of(&self, block: usize) -> &[u32] {
-        &self.springs[self.starts[block]..self.starts[block + 1]]
     }
 }

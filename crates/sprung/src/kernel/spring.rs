@@ -3,22 +3,18 @@
 use super::{LANES, Lanes, six};
 use crate::math::COINCIDENT_SQUARED;
 
-/// What the force of springs depends on besides their ends.
+/// What the force of springs depends on besides their ends: k_s (N/m), k_d (N·s/m) and L (m).
 #[derive(Clone, Copy)]
-pub(super) struct LawLanes<'a> {
-    pub stiffness: OneOrEach<'a>,
-    pub damping: OneOrEach<'a>,
-    pub rest_length: OneOrEach<'a>,
+pub(super) enum LawLanes<'a> {
+    /// The same for all lanes.
+    Same([f32; 3]),
+    /// The same k_s and k_d, and an L for each.
+    Lengths([f32; 2], &'a Lanes),
+    /// All three for each.
+    Each([&'a Lanes; 3]),
 }
 
-/// One value for all lanes, or one for each.
-#[derive(Clone, Copy)]
-pub(super) enum OneOrEach<'a> {
-    Same(f32),
-    Each(&'a Lanes),
-}
-
-/// Axes e = x_i − x_j and relative velocities w = v_i − v_j of some springs; then, in place of the axes, the forces.
+/// Axes e = x_i − x_j of some springs, what else of their ends goes into the force, and then the force itself.
 ///
 /// The arithmetic goes through in short loops over all lanes: a processor can only look ahead so far, and in one long loop
 /// would wait for the root and the division of each vector in turn.
@@ -26,7 +22,7 @@ pub(super) enum OneOrEach<'a> {
 /// Aligned to cache lines, as vectors that lie across two of them are read and written at half the speed.
 #[repr(C, align(64))]
 pub(super) struct SpringLanes {
-    /// e, and after [`pull`](Self::pull) the force −F on the far end.
+    /// e.
     pub axis: [Lanes; 3],
     /// |e|².
     length_squared: Lanes,
@@ -54,21 +50,23 @@ impl SpringLanes {
         }
     }
 
-    /// F = −(k_s(ℓ − L) + k_d(w·u))·u with ℓ = |e|, u = e/ℓ on the near end, and −F left in `axis`, for the lanes whose bit
-    /// of `mask` is set; zero for the others, and while the ends coincide. Sums of three go from left to right.
-    ///
-    /// The root and the division are exact to half an ulp, as IEEE 754 has them, and so the same on every machine.
+    /// The tensions of the lanes whose bit of `mask` is set; zero for the others.
     #[inline(always)]
     pub fn pull(&mut self, law: LawLanes<'_>, mask: u32) {
         // One loop for each kind of law: the choice is made out here.
-        use OneOrEach::{Each, Same};
-        match (law.stiffness, law.damping, law.rest_length) {
-            (Same(k), Same(d), Same(rest)) => self.tension(mask, |_| (k, d, rest)),
-            (Same(k), Same(d), Each(rest)) => self.tension(mask, |lane| (k, d, rest[lane])),
-            (Each(k), Each(d), Each(rest)) => {
-                self.tension(mask, |lane| (k[lane], d[lane], rest[lane]));
-            }
-            (k, d, rest) => self.tension(mask, |lane| (k.at(lane), d.at(lane), rest.at(lane))),
+        match law {
+            LawLanes::Same([k, d, rest]) => self.pull_by(mask, |_| [k, d, rest]),
+            LawLanes::Lengths([k, d], rest) => self.pull_by(mask, |lane| [k, d, rest[lane]]),
+            LawLanes::Each([k, d, rest]) => self.pull_by(mask, |lane| [k[lane], d[lane], rest[lane]]),
+        }
+    }
+
+    /// The same for the law (k_s, k_d, L) of each lane.
+    #[inline(always)]
+    pub fn pull_by(&mut self, mask: u32, law: impl Fn(usize) -> [f32; 3]) {
+        for lane in 0..LANES {
+            let tension = tension(self.length_squared[lane], self.approach[lane], law(lane));
+            self.tension[lane] = if (mask >> lane) & 1 != 0 { tension } else { 0.0 };
         }
     }
 
@@ -91,32 +89,20 @@ impl SpringLanes {
         }
         force
     }
-
-    /// As [`pull`](Self::pull), for the law (k_s, k_d, L) of each lane.
-    #[inline(always)]
-    pub fn tension(&mut self, mask: u32, law: impl Fn(usize) -> (f32, f32, f32)) {
-        for lane in 0..LANES {
-            let (stiffness, damping, rest_length) = law(lane);
-            let squared = self.length_squared[lane];
-            // Coincident ends have no axis: u = e/10⁻¹⁵ m is then zero, without a branch.
-            let squared = if squared > COINCIDENT_SQUARED { squared } else { COINCIDENT_SQUARED };
-            let length = squared.sqrt();
-            let inverse = 1.0 / length;
-            let speed = self.approach[lane] * inverse;
-            let tension = (stiffness * (length - rest_length) + damping * speed) * inverse;
-            self.tension[lane] = if (mask >> lane) & 1 != 0 { tension } else { 0.0 };
-        }
-    }
 }
 
-impl OneOrEach<'_> {
-    #[inline(always)]
-    fn at(self, lane: usize) -> f32 {
-        match self {
-            Self::Same(value) => value,
-            Self::Each(values) => values[lane],
-        }
-    }
+/// T/ℓ of a spring from |e|² and w·e: the force on its near end is F = −T·u = −(T/ℓ)·e, with T = k_s(ℓ − L) + k_d(w·u),
+/// ℓ = |e| and u = e/ℓ.
+///
+/// The root and the division are exact to half an ulp, as IEEE 754 has them, and so the same on every machine.
+#[inline(always)]
+pub(super) fn tension(squared: f32, approach: f32, [stiffness, damping, rest_length]: [f32; 3]) -> f32 {
+    // Coincident ends have no axis: u = e/10⁻¹⁵ m is then zero, without a branch.
+    let squared = if squared > COINCIDENT_SQUARED { squared } else { COINCIDENT_SQUARED };
+    let length = squared.sqrt();
+    let inverse = 1.0 / length;
+    let speed = approach * inverse;
+    (stiffness * (length - rest_length) + damping * speed) * inverse
 }
 
 /// sums += values.

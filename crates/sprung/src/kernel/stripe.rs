@@ -28,16 +28,16 @@ pub(super) struct Ends<'a> {
 pub(super) fn accumulate(ends: Ends<'_>, mask: &Mask, law: &Law, values: &Values, springs: &mut SpringLanes) {
     // The loop over all sets once for each kind of law: the choice is made out here.
     match *law {
-        Law::Same([k, d, rest]) => each_set(ends, mask, springs, |_, _| (k, d, rest)),
+        Law::Same([k, d, rest]) => each_set(ends, mask, springs, |_, _| [k, d, rest]),
         Law::Lengths([k, d], first) => {
             let rest = values.block(first);
-            each_set(ends, mask, springs, |set, lane| (k, d, rest[set][lane]));
+            each_set(ends, mask, springs, |set, lane| [k, d, rest[set][lane]]);
         }
         Law::Each(first) => {
             let all = values.block_of_three(first);
             each_set(ends, mask, springs, |set, lane| {
                 let [k, d, rest] = &all[set];
-                (k[lane], d[lane], rest[lane])
+                [k[lane], d[lane], rest[lane]]
             });
         }
     }
@@ -45,19 +45,14 @@ pub(super) fn accumulate(ends: Ends<'_>, mask: &Mask, law: &Law, values: &Values
 
 /// Adds the forces of a stripe whose springs have the law (k_s, k_d, L) at each set and lane.
 #[inline(always)]
-fn each_set(
-    ends: Ends<'_>,
-    mask: &Mask,
-    springs: &mut SpringLanes,
-    law: impl Fn(usize, usize) -> (f32, f32, f32),
-) {
+fn each_set(ends: Ends<'_>, mask: &Mask, springs: &mut SpringLanes, law: impl Fn(usize, usize) -> [f32; 3]) {
     let Ends { near, far, near_force: [near_x, near_y, near_z], far_force: [far_x, far_y, far_z] } = ends;
     for set in 0..SETS {
         if mask[set] == 0 {
             continue;
         }
         springs.fetch(six(near, |block| &block[set]), six(far, |block| &block[set]));
-        springs.tension(mask[set], |lane| law(set, lane));
+        springs.pull_by(mask[set], |lane| law(set, lane));
         springs.hand_out(0, &mut near_x[set], &mut far_x[set]);
         springs.hand_out(1, &mut near_y[set], &mut far_y[set]);
         springs.hand_out(2, &mut near_z[set], &mut far_z[set]);

@@ -15,9 +15,10 @@ use super::laws::Laws;
 use super::level::{Checked, Level};
 use super::plan::Plan;
 use super::region::Region;
+use super::spring::tension;
 use super::sweep::{Purpose, Push, PushKind, Sweep};
 use super::{BLOCK, GROUP};
-use crate::math::{self, COINCIDENT_SQUARED};
+use crate::math;
 use crate::model::Model;
 use crate::params::{Grab, Params};
 use crate::state::State;
@@ -468,14 +469,10 @@ fn receive(region: &mut Region, borders: &[Mutex<Border>], index: usize) {
     }
 }
 
-/// The force on the first end of one spring, N, by the formula of [`super::spring`].
-fn pull([stiffness, damping, rest_length]: [f32; 3], [[x_i, v_i], [x_j, v_j]]: [[Vec3; 2]; 2]) -> Vec3 {
+/// The force on the first end of one spring, N.
+fn pull(law: [f32; 3], [[x_i, v_i], [x_j, v_j]]: [[Vec3; 2]; 2]) -> Vec3 {
     let (axis, apart) = (x_i - x_j, v_i - v_j);
-    let squared = math::dot(axis, axis);
-    let length = if squared > COINCIDENT_SQUARED { squared } else { COINCIDENT_SQUARED }.sqrt();
-    let inverse = 1.0 / length;
-    let speed = math::dot(apart, axis) * inverse;
-    axis * -((stiffness * (length - rest_length) + damping * speed) * inverse)
+    axis * -tension(math::dot(axis, axis), math::dot(apart, axis), law)
 }
 
 /// Writes pairs of vectors, the first three arrays and the last three.

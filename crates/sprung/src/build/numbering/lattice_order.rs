@@ -7,8 +7,8 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::buckets::Buckets;
 use super::spatial_order::{bounds, longest_first, spatial_order};
+use crate::buckets::Buckets;
 
 /// Fewer points than these are not worth being called a lattice.
 const FEWEST_POINTS: usize = 8;

@@ -7,7 +7,6 @@
 //! All of it is a function of positions and springs that is the same on every machine: sums, products, square roots
 //! and comparisons in float64, and sorts by total orders.
 
-mod buckets;
 mod lattice_order;
 mod quality;
 mod spatial_order;

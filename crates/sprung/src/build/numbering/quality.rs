@@ -1,13 +1,12 @@
 //! How well an order of points suits the step.
 
-use super::buckets::Buckets;
+use crate::buckets::Buckets;
 
-/// Consecutive points that the step takes together.
+/// Consecutive points over which stripes are counted: as many as a group of the step's blocks.
 const BLOCK: usize = 1024;
 
-/// Springs in a block of 1024 points that make a stripe worth it. A stripe costs the same however many of its springs
-/// are there, and a spring by itself about four times its share of a full stripe: with fewer than a quarter a stripe
-/// loses, and near a quarter it gains too little to be set up.
+/// Springs of one offset in 1024 points that count as a stripe. The step decides block by block and set by set; this is
+/// coarser, and only compares orders.
 const WORTH_A_STRIPE: usize = 300;
 
 /// Stripes and bandwidth of one order of the points.

@@ -1,7 +1,8 @@
 //! Sorting by a small whole number.
 
 /// Values sorted by bucket, and within a bucket in the order in which they came.
-pub(super) struct Buckets<T> {
+#[derive(Clone, Debug)]
+pub(crate) struct Buckets<T> {
     /// Where each bucket begins in `values`, and the total at the end.
     starts: Vec<usize>,
     values: Vec<T>,
