@@ -1,6 +1,6 @@
 //! Forces, one file each, and the one list of them.
 //!
-//! Each force is written twice: in float32 for the step, in [`kernel`](crate::kernel), and here in float64, split into the
+//! Each force is written twice: in float32 for the step, in the private module `kernel`, and here in float64, split into the
 //! part that stores energy and the rest, for the energy ledger and for the tests that hold every force against its potential.
 
 pub(crate) mod contact;
