@@ -40,9 +40,9 @@ fn rounding(model: &Model, params: &Params, state: &State) -> (f64, f64) {
     let of_point = |at: usize| {
         let (radius, speed) = (position(state, at).length(), velocity(state, at).length());
         let mass = f64::from(params.point_mass[at]);
-        // The new speed; and 1e-20 m/s where one counts as zero.
+        // The new speed; and 2⁻⁶³ m/s where one counts as zero.
         let speed = speed + forces[at] * params.dt / mass;
-        let linear = params.dt * count[at] * U * forces[at] + mass * (4.0 * U * U * speed + 1e-20);
+        let linear = params.dt * count[at] * U * forces[at] + mass * (4.0 * U * U * speed + 2f64.powi(-63));
         let turning = params.dt * 16.0 * U * radius * forces[at] + 3.0 * U * mass * speed * speed * params.dt;
         (linear, radius * linear + turning)
     };

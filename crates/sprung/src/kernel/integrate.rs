@@ -4,13 +4,14 @@ use super::{LANES, Lanes};
 use crate::contact::{ContactLaw, Plane};
 use glam::Vec3;
 
-/// A velocity component smaller than this becomes zero, m/s: a cloth at rest must not fill with denormal numbers, which
-/// are slow and whose treatment differs from host to host.
-const NEGLIGIBLE_SPEED: f32 = 1e-20;
+/// The bits of a float32 of which one at least is set where it is 2⁻⁶³ or more in size. A velocity component smaller than
+/// that, 10⁻¹⁹ m/s, becomes zero: a cloth at rest must not fill with denormal numbers, which are slow and whose treatment
+/// differs from host to host.
+const NOTABLE_SPEED: u32 = 0x6000_0000;
 
-/// A change of velocity smaller than this is none, m/s. Residues of positions and velocities are then multiples of its
-/// last bit, or of that of the smallest speed × the smallest step, and never denormal.
-const NEGLIGIBLE_KICK: f32 = 1e-28;
+/// The same for 2⁻⁹⁵. A smaller change of velocity, of 2·10⁻²⁹ m/s, is none: residues of positions and velocities are then
+/// multiples of its last bit, or of that of the smallest speed × the smallest step, and never denormal.
+const NOTABLE_KICK: u32 = 0x7000_0000;
 
 /// What acts on every point alike.
 #[derive(Clone, Copy)]
@@ -36,12 +37,12 @@ pub(super) fn advance(motion: Motion<'_>, force: &Lanes, inverse_mass: &Lanes, g
     let zeros = [0.0; LANES];
     let (mut x, mut x_low, mut v, mut v_low) = (zeros, zeros, zeros, zeros);
     for lane in 0..LANES {
-        let fall = if inverse_mass[lane] > 0.0 { gravity } else { 0.0 };
-        let acceleration = force[lane] * inverse_mass[lane] + fall;
+        let pushed = force[lane] * inverse_mass[lane];
+        let acceleration = if inverse_mass[lane] > 0.0 { pushed + gravity } else { pushed };
         let kick = acceleration * dt + motion.velocity_low[lane];
-        let kick = if kick.abs() < NEGLIGIBLE_KICK { 0.0 } else { kick };
+        let kick = if kick.to_bits() & NOTABLE_KICK != 0 { kick } else { 0.0 };
         let (speed, speed_low) = fast_two_sum(motion.velocity[lane], kick);
-        v[lane] = if speed.abs() < NEGLIGIBLE_SPEED { 0.0 } else { speed };
+        v[lane] = if speed.to_bits() & NOTABLE_SPEED != 0 { speed } else { 0.0 };
         v_low[lane] = speed_low;
         let way = v[lane] * dt + motion.position_low[lane];
         (x[lane], x_low[lane]) = fast_two_sum(motion.position[lane], way);

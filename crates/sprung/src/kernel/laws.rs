@@ -4,7 +4,7 @@
 use super::energy::Norms;
 use super::plan::Plan;
 use super::spring::LawLanes;
-use super::stripe::{Block, Mask, SETS};
+use super::stripe::Mask;
 use super::{BLOCK, LANES, Lanes};
 use crate::model::Model;
 use crate::params::Params;
@@ -152,28 +152,16 @@ impl Values {
         }
     }
 
-    /// The sets of lanes of a stripe.
-    #[inline(always)]
-    pub fn block(&self, first: u32) -> &Block {
-        self.0[first as usize..].first_chunk().expect("a stripe has a value for each point of its block")
-    }
-
-    /// The same of k_s, k_d and L in turn.
-    #[inline(always)]
-    pub fn block_of_three(&self, first: u32) -> &[[Lanes; 3]; SETS] {
-        let threes = self.0[first as usize..].as_chunks().0;
-        threes.first_chunk().expect("a stripe has three values for each point of its block")
-    }
-
     /// The laws of one set of lanes of a stripe, or of one row of a bundle.
     #[inline(always)]
     pub fn lanes(&self, law: &Law, set: usize) -> LawLanes<'_> {
-        let at = |first: u32, set: usize| &self.0[first as usize + set];
         match *law {
             Law::Same(law) => LawLanes::Same(law),
-            Law::Lengths(material, first) => LawLanes::Lengths(material, at(first, set)),
+            Law::Lengths(material, first) => LawLanes::Lengths(material, &self.0[first as usize + set]),
             Law::Each(first) => {
-                LawLanes::Each([at(first, 3 * set), at(first, 3 * set + 1), at(first, 3 * set + 2)])
+                let [k, d, rest] =
+                    self.0[first as usize + 3 * set..].first_chunk().expect("three for each set");
+                LawLanes::Each([k, d, rest])
             }
         }
     }

@@ -1,9 +1,9 @@
 //! The explicit step, as fast as the machine allows.
 //!
 //! A step is one sweep through the points in a hidden order ([`Model::place_of`](crate::Model)), in blocks of 256. A
-//! spring is evaluated once, at whichever of its ends comes first in that order. When the springs of a block are done its
-//! points have all their forces, and nobody asks for their old positions any more: they are moved at once, while they are
-//! still in the cache.
+//! spring is evaluated once, at whichever of its ends comes first in that order; those of 32 points in a row add up in
+//! registers. When the springs of a block are done its points have all their forces, and nobody asks for their old positions
+//! any more: they are moved at once, while they are still in the cache.
 //!
 //! - [`plan`]: which springs go through which loop, from the model alone.
 //! - [`stripe`]: springs of consecutive points to neighbours at one offset, with plain vector loads.
@@ -20,7 +20,7 @@
 //! one by one:
 //!
 //! - F₁ sums the stripes that begin at the point, in ascending order of their offset.
-//! - F₂ sums the stripes that end there, block by block in ascending order of where they begin, in a block by offset.
+//! - F₂ sums the stripes that end there, in ascending order of the set of 32 points where they begin, in a set by offset.
 //! - F₃ sums the packed springs at either end, group by group of four blocks in ascending order of where they begin, in a
 //!   group bundle by bundle. A bundle is a matrix of springs: a lane holds up to eight that begin at one point, by ascending
 //!   offset, and lanes with most springs come first. Its forces go to the points where its springs end, row by row and lane

@@ -45,8 +45,8 @@ pub(super) struct Forces {
     pub packed: Vec<Force>,
     /// Blocks in a slide.
     slide: usize,
-    /// How far beyond a block its springs' forces may reach.
-    reach: usize,
+    /// How far beyond a set its springs' forces may reach, in whole sets.
+    pub reach: usize,
 }
 
 impl Region {
@@ -102,15 +102,16 @@ impl Forces {
         }
     }
 
-    /// Before the block that is swept as number `count`: where its points are in `far`. Sets `near` to zero, and `far` as
-    /// far as this block is the first to reach.
+    /// Before the block that is swept as number `count`: where its points are in `far`. Sets the forces of packed springs
+    /// to zero as far as this block is the first to reach, and those of stripes as far as the ones before it would have.
     #[inline(always)]
     pub fn begin_block(&mut self, count: usize) -> usize {
-        let Self { near, far, packed, slide, reach } = self;
+        let Self { far, packed, slide, reach, .. } = self;
         let first = count % *slide * BLOCK;
         let mut unused = first + *reach..first + *reach + BLOCK;
         if count == 0 {
             unused.start = 0;
+            far.all_mut().into_iter().for_each(|sums| sums[..*reach].fill(0.0));
         } else if first == 0 {
             let begun = *slide * BLOCK..*slide * BLOCK + *reach;
             far.all_mut().into_iter().for_each(|sums| sums.copy_within(begun.clone(), 0));
@@ -118,8 +119,6 @@ impl Forces {
                 packed.copy_within(begun, 0);
             }
         }
-        near.all_mut().into_iter().for_each(|sums| sums.fill(0.0));
-        far.all_mut().into_iter().for_each(|sums| sums[unused.clone()].fill(0.0));
         if !packed.is_empty() {
             packed[unused].fill([0.0; 4]);
         }

@@ -92,17 +92,16 @@ impl SpringLanes {
 }
 
 /// T/ℓ of a spring from |e|² and w·e: the force on its near end is F = −T·u = −(T/ℓ)·e, with T = k_s(ℓ − L) + k_d(w·u),
-/// ℓ = |e| and u = e/ℓ.
+/// ℓ = |e| and u = e/ℓ. Hence T/ℓ = (k_s(ℓ − L)·ℓ + k_d(w·e))/ℓ², where the root need not be waited for by the division.
 ///
-/// The root and the division are exact to half an ulp, as IEEE 754 has them, and so the same on every machine.
+/// Both are exact to half an ulp, as IEEE 754 has them, and so the same on every machine. A spring of length L has T = 0.
 #[inline(always)]
 pub(super) fn tension(squared: f32, approach: f32, [stiffness, damping, rest_length]: [f32; 3]) -> f32 {
     // Coincident ends have no axis: u = e/10⁻¹⁵ m is then zero, without a branch.
     let squared = if squared > COINCIDENT_SQUARED { squared } else { COINCIDENT_SQUARED };
     let length = squared.sqrt();
-    let inverse = 1.0 / length;
-    let speed = approach * inverse;
-    (stiffness * (length - rest_length) + damping * speed) * inverse
+    let inverse = 1.0 / squared;
+    (stiffness * (length - rest_length) * length + damping * approach) * inverse
 }
 
 /// sums += values.

@@ -1,6 +1,7 @@
 //! Springs of consecutive points to neighbours at one offset: plain vector loads at both ends, each spring once.
 
-use super::laws::{Law, Values};
+use super::laws::{Law, Laws, Values};
+use super::plan::{Plan, Stripe};
 use super::spring::SpringLanes;
 use super::{BLOCK, LANES, Lanes, six};
 
@@ -13,50 +14,66 @@ pub(super) type Mask = [u32; SETS];
 /// A value for each point of a block.
 pub(super) type Block = [Lanes; SETS];
 
-/// The points of one stripe.
-pub(super) struct Ends<'a> {
-    /// Positions and velocities (x y z u v w) of the points where springs begin, and of those where they end.
-    pub near: [&'a Block; 6],
-    pub far: [&'a Block; 6],
-    /// Forces on both.
-    pub near_force: [&'a mut Block; 3],
-    pub far_force: [&'a mut Block; 3],
+/// The stripes that begin in a block, with their laws.
+#[derive(Clone, Copy)]
+pub(super) struct Stripes<'a> {
+    stripes: &'a [Stripe],
+    masks: &'a [Mask],
+    laws: &'a [Law],
+    values: &'a Values,
 }
 
-/// Adds the forces of one stripe.
-#[inline(always)]
-pub(super) fn accumulate(ends: Ends<'_>, mask: &Mask, law: &Law, values: &Values, springs: &mut SpringLanes) {
-    // The loop over all sets once for each kind of law: the choice is made out here.
-    match *law {
-        Law::Same([k, d, rest]) => each_set(ends, mask, springs, |_, _| [k, d, rest]),
-        Law::Lengths([k, d], first) => {
-            let rest = values.block(first);
-            each_set(ends, mask, springs, |set, lane| [k, d, rest[set][lane]]);
+impl<'a> Stripes<'a> {
+    #[inline(always)]
+    pub fn new(plan: &'a Plan, laws: &'a Laws, block: usize) -> Self {
+        let range = plan.blocks[block].stripes.clone();
+        Self {
+            stripes: &plan.stripes[range.clone()],
+            masks: &laws.masks[range.clone()],
+            laws: &laws.stripes[range],
+            values: &laws.values,
         }
-        Law::Each(first) => {
-            let all = values.block_of_three(first);
-            each_set(ends, mask, springs, |set, lane| {
-                let [k, d, rest] = &all[set];
-                [k[lane], d[lane], rest[lane]]
-            });
+    }
+
+    /// Adds the forces of their springs that begin at one set of the block's points: those on their far ends to `forces`.
+    /// Returns the sums of those on their near ends.
+    ///
+    /// `points`: positions and velocities (x y z u v w) from the set's first point on, as far as stripes reach; `forces`:
+    /// those on the same points.
+    #[inline(always)]
+    pub fn accumulate(
+        self,
+        set: usize,
+        points: [&[f32]; 6],
+        [far_x, far_y, far_z]: [&mut [f32]; 3],
+        springs: &mut SpringLanes,
+    ) -> [Lanes; 3] {
+        let near = six(points, lanes);
+        let [mut x, mut y, mut z] = [[0.0; LANES]; 3];
+        for ((stripe, mask), law) in self.stripes.iter().zip(self.masks).zip(self.laws) {
+            let (offset, mask) = (stripe.offset, mask[set]);
+            if mask == 0 {
+                continue;
+            }
+            springs.fetch(near, six(points, |array| lanes(&array[offset..])));
+            springs.pull(self.values.lanes(law, set), mask);
+            springs.hand_out(0, &mut x, lanes_mut(&mut far_x[offset..]));
+            springs.hand_out(1, &mut y, lanes_mut(&mut far_y[offset..]));
+            springs.hand_out(2, &mut z, lanes_mut(&mut far_z[offset..]));
         }
+        [x, y, z]
     }
 }
 
-/// Adds the forces of a stripe whose springs have the law (k_s, k_d, L) at each set and lane.
+/// The first lanes of some values.
 #[inline(always)]
-fn each_set(ends: Ends<'_>, mask: &Mask, springs: &mut SpringLanes, law: impl Fn(usize, usize) -> [f32; 3]) {
-    let Ends { near, far, near_force: [near_x, near_y, near_z], far_force: [far_x, far_y, far_z] } = ends;
-    for set in 0..SETS {
-        if mask[set] == 0 {
-            continue;
-        }
-        springs.fetch(six(near, |block| &block[set]), six(far, |block| &block[set]));
-        springs.pull_by(mask[set], |lane| law(set, lane));
-        springs.hand_out(0, &mut near_x[set], &mut far_x[set]);
-        springs.hand_out(1, &mut near_y[set], &mut far_y[set]);
-        springs.hand_out(2, &mut near_z[set], &mut far_z[set]);
-    }
+pub(super) fn lanes(values: &[f32]) -> &Lanes {
+    values.first_chunk().expect("arrays end with a block to spare")
+}
+
+#[inline(always)]
+pub(super) fn lanes_mut(values: &mut [f32]) -> &mut Lanes {
+    values.first_chunk_mut().expect("arrays end with a block to spare")
 }
 
 /// What lies at the points of a block, given what lies from the first of them on.

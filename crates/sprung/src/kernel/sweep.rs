@@ -8,9 +8,9 @@ use super::laws::Laws;
 use super::level::Work;
 use super::packed::Force;
 use super::plan::Plan;
-use super::region::Region;
+use super::region::{Forces, Region};
 use super::spring::SpringLanes;
-use super::stripe::{Block, Ends, SETS, block_mut};
+use super::stripe::{Block, SETS, Stripes, block_mut, lanes_mut};
 use super::{BLOCK, LANES, Lanes, packed, six, stripe};
 
 /// A force on one point that not every point feels.
@@ -77,26 +77,29 @@ impl Sweep<'_> {
     fn springs(&mut self, block: usize, far_at: usize, springs: &mut SpringLanes) {
         let Self { region, plan, laws, .. } = self;
         let first = region.index(block * BLOCK);
-        let points = six(region.points.all(), |array| &array[first..]);
-        let near = six(points, stripe::block);
-        let forces = &mut region.forces;
-        let [near_x, near_y, near_z] = forces.near.all_mut();
-        let [near_x, near_y, near_z] = [block_mut(near_x), block_mut(near_y), block_mut(near_z)];
-        let [far_x, far_y, far_z] = forces.far.all_mut();
-        let block = &plan.blocks[block];
-        for index in block.stripes.clone() {
-            let offset = plan.stripes[index].offset;
-            let far = six(points, |array| stripe::block(&array[offset..]));
-            let at = far_at + offset;
-            let near_force = [&mut *near_x, &mut *near_y, &mut *near_z];
-            let far_force =
-                [block_mut(&mut far_x[at..]), block_mut(&mut far_y[at..]), block_mut(&mut far_z[at..])];
-            let ends = Ends { near, far, near_force, far_force };
-            stripe::accumulate(ends, &laws.masks[index], &laws.stripes[index], &laws.values, springs);
-        }
-        for index in block.bundles.clone() {
-            let forces = &mut forces.packed[far_at..];
+        // All of one length, so that one check is enough for all.
+        let len = region.points.len() - first;
+        let points = six(region.points.all(), |array| &array[first..][..len]);
+        for index in plan.blocks[block].bundles.clone() {
+            let forces = &mut region.forces.packed[far_at..];
             packed::accumulate(points, plan, laws, index, forces, springs);
+        }
+        let Forces { near, far, reach, .. } = &mut region.forces;
+        let (len, reach) = (far.len() - far_at, *reach);
+        let [far_x, far_y, far_z] = far.all_mut().map(|array| &mut array[far_at..][..len]);
+        let [near_x, near_y, near_z] = near.all_mut();
+        let [near_x, near_y, near_z] = [block_mut(near_x), block_mut(near_y), block_mut(near_z)];
+        let stripes = Stripes::new(plan, laws, block);
+        for set in 0..sets_of(plan, block) {
+            let at = set * LANES;
+            // Nothing else reaches as far as this.
+            *lanes_mut(&mut far_x[at + reach..]) = [0.0; LANES];
+            *lanes_mut(&mut far_y[at + reach..]) = [0.0; LANES];
+            *lanes_mut(&mut far_z[at + reach..]) = [0.0; LANES];
+            let ahead = six(points, |array| &array[at..]);
+            let far = [&mut far_x[at..], &mut far_y[at..], &mut far_z[at..]];
+            let [x, y, z] = stripes.accumulate(set, ahead, far, springs);
+            (near_x[set], near_y[set], near_z[set]) = (x, y, z);
         }
     }
 
@@ -106,7 +109,6 @@ impl Sweep<'_> {
         let Self { region, plan, field, pushes, purpose, .. } = self;
         let first = region.index(block * BLOCK);
         let own = (block - region.blocks.start) * BLOCK;
-        let len = BLOCK.min(plan.points - block * BLOCK);
         let forces = &region.forces;
         let [near_x, near_y, near_z] = forces.near.all();
         let near = [stripe::block(near_x), stripe::block(near_y), stripe::block(near_z)];
@@ -129,7 +131,7 @@ impl Sweep<'_> {
         };
         let mut points = six(points.all_mut(), |array| block_mut(&mut array[first..]));
         let mut low = six(low.all_mut(), |array| block_mut(&mut array[first..]));
-        for set in 0..len.div_ceil(LANES).min(SETS) {
+        for set in 0..sets_of(plan, block) {
             let mut force = sum(near, far, set);
             if let Some(packed) = packed {
                 add_packed(&packed[set * LANES..], &mut force);
@@ -176,6 +178,12 @@ impl Sweep<'_> {
             }
         }
     }
+}
+
+/// How many sets of lanes a block has: the last one may have fewer.
+#[inline(always)]
+fn sets_of(plan: &Plan, block: usize) -> usize {
+    (plan.points - block * BLOCK).div_ceil(LANES).min(SETS)
 }
 
 /// Copies a block, whose first point is at `first`.

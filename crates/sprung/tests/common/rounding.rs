@@ -32,9 +32,9 @@ impl OfForce {
 /// A spring of length ℓ between points no further than r from the origin:
 /// - its axis e is that of the *rounded* positions, off by δ = 2u·r (half an ulp at each end), and by u·ℓ more;
 /// - ℓ is a sum of squares and a root: 3u·ℓ besides δ. So the stretch is off by δ + 5u·ℓ + u·|ℓ − L|;
-/// - u = e·(1/ℓ) turns by 2δ/ℓ and is rounded thrice more: 2δ/ℓ + 6u;
+/// - u = e·ℓ·(1/ℓ²) turns by 2δ/ℓ and is rounded four times more: 2δ/ℓ + 7u;
 /// - the relative speed w·u: velocities are rounded too, 2u·v, and the product is off by 2δ/ℓ + 10u of |w|;
-/// - both enter the tension T, which is then multiplied by u: T·(2δ/ℓ + 8u) more.
+/// - both enter the tension T, which is then multiplied by u: T·(2δ/ℓ + 9u) more.
 ///
 /// A plane sees a depth off by 2u·r + 4u·d, d being the distance to its point, and a speed off by 5u·v; at the very edge
 /// one side may touch and the other not yet, and then the damper's whole force is the difference.
@@ -58,7 +58,7 @@ pub fn of_forces(model: &Model, params: &Params, state: &State) -> Vec<OfForce> 
         let tension = stiffness * stretch + damping * apart;
         let off = stiffness * (delta + 5.0 * U * length + U * stretch)
             + damping * (apart * (turn + 10.0 * U) + 2.0 * U * fastest)
-            + tension * (turn + 8.0 * U);
+            + tension * (turn + 9.0 * U);
         forces[i].add(off, tension);
         forces[j].add(off, tension);
     }
@@ -93,7 +93,7 @@ pub fn of_forces(model: &Model, params: &Params, state: &State) -> Vec<OfForce> 
 /// How far one step may be off at each point, in position (m) and velocity (m/s).
 ///
 /// The force is divided by m and multiplied by dt, and dt, 1/m and the sum with what was dropped before are rounded: 5u of
-/// dt·F/m; 1e-20 where a speed counts as zero. x moves by dt times the *rounded* velocity, u·v, rounded twice more.
+/// dt·F/m; 2⁻⁶³ where a speed counts as zero. x moves by dt times the *rounded* velocity, u·v, rounded twice more.
 pub fn of_step(model: &Model, params: &Params, state: &State) -> Vec<[f64; 2]> {
     let of_point = |(at, force): (usize, OfForce)| {
         if params.is_fixed(at) {
@@ -101,7 +101,7 @@ pub fn of_step(model: &Model, params: &Params, state: &State) -> Vec<[f64; 2]> {
         }
         let by_mass = params.dt / f64::from(params.point_mass[at]);
         let kick = force.sizes * by_mass;
-        let dv = force.total() * by_mass + 5.0 * U * kick + 1e-20;
+        let dv = force.total() * by_mass + 5.0 * U * kick + 2f64.powi(-63);
         [params.dt * (dv + 3.0 * U * (velocity(state, at).length() + kick)), dv]
     };
     of_forces(model, params, state).into_iter().enumerate().map(of_point).collect()

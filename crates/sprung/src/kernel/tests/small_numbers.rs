@@ -51,11 +51,11 @@ fn numbers(state: &State) -> impl Iterator<Item = (&'static str, f32)> {
 }
 
 /// What `integrate` argues: positions and their residues are multiples of the last bit of the smallest position, 2⁻¹²³ m,
-/// or of the smallest way, 10⁻²⁰ m/s for 10⁻⁹ s, which is coarser; velocities and theirs of the last bit of the smallest
-/// kick, 10⁻²⁸ m/s, 2⁻¹¹⁷ m/s. The smallest normal number is 2⁻¹²⁶.
+/// or of the smallest way, 2⁻⁶³ m/s for 10⁻⁹ s, which is coarser; velocities and theirs of the last bit of the smallest
+/// kick, 2⁻⁹⁵ m/s, 2⁻¹¹⁸ m/s. The smallest normal number is 2⁻¹²⁶.
 fn assert_is_coarse(name: &str, state: &State) {
     for (array, number) in numbers(state) {
-        let bit = if array.starts_with("position") { -123 } else { -117 };
+        let bit = if array.starts_with("position") { -123 } else { -118 };
         let units = f64::from(number) * 2f64.powi(-bit);
         assert!(units.fract() == 0.0, "{name}: {array} has {number:e}, which is no multiple of 2^{bit}");
     }

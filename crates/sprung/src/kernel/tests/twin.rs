@@ -16,7 +16,7 @@ use crate::state::State;
 
 /// In which order the springs' forces add up, found anew from the model.
 pub struct Order {
-    /// Springs of stripes: block by block, by ascending offset and then place.
+    /// Springs of stripes: set by set of points, by ascending offset and then place.
     stripes: Vec<u32>,
     /// Bundles of packed springs: of each lane, the springs of one point.
     bundles: Vec<Vec<Vec<u32>>>,
@@ -63,7 +63,7 @@ impl Order {
             let [near, far] = model.places(spring);
             by_offset.entry(far - near).or_default().push((near, spring));
         }
-        let (mut left_over, count) = (Vec::new(), springs.len());
+        let (mut left_over, count, begin) = (Vec::new(), springs.len(), self.stripes.len());
         for (offset, mut springs) in by_offset {
             springs.sort_unstable();
             let mut sets: Vec<u32> = springs.iter().map(|(near, _)| near / LANES as u32).collect();
@@ -79,6 +79,7 @@ impl Order {
                 }
             }
         }
+        self.stripes[begin..].sort_by_key(|&spring| model.places(spring)[0] / LANES as u32);
         left_over
     }
 
@@ -152,9 +153,9 @@ pub fn step<R: Real>(Parts { model, params, .. }: &Parts, order: &Order, state: 
             let [x, x_low, v, v_low] = motion.each_ref().map(|vector| R::of(vector[axis]));
             let fall = R::of(if inverse_mass > 0.0 { params.gravity[axis] } else { 0.0 });
             let kick = (force[axis] * R::of(inverse_mass) + fall) * dt + v_low;
-            let kick = if kick.get().abs() < 1e-28 { R::of(0.0) } else { kick };
+            let kick = if kick.get().abs() < 2f32.powi(-95) { R::of(0.0) } else { kick };
             let (v, v_low) = fast_two_sum(v, kick);
-            let v = if v.get().abs() < 1e-20 { R::of(0.0) } else { v };
+            let v = if v.get().abs() < 2f32.powi(-63) { R::of(0.0) } else { v };
             let (x, x_low) = fast_two_sum(x, v * dt + x_low);
             for (value, new) in [x, x_low, v, v_low].into_iter().enumerate() {
                 motion[value][axis] = new.get();
@@ -180,11 +181,12 @@ fn forces<R: Real>(model: &Model, params: &Params, order: &Order, state: &State)
         let (e, w) = (sub(x_i, x_j), sub(v_i, v_j));
         let squared = dot(e, e);
         let coincident = R::of(COINCIDENT_SQUARED);
-        let length = if squared > coincident { squared } else { coincident }.sqrt();
-        let inverse = R::of(1.0) / length;
+        let squared = if squared > coincident { squared } else { coincident };
+        let length = squared.sqrt();
+        let inverse = R::of(1.0) / squared;
         let [k, d, rest] = [&params.spring_stiffness, &params.spring_damping, &params.spring_rest_length]
             .map(|of| R::of(of[spring]));
-        let tension = (k * (length - rest) + d * (dot(w, e) * inverse)) * inverse;
+        let tension = (k * (length - rest) * length + d * dot(w, e)) * inverse;
         e.map(|e| e * tension)
     };
     let live = |spring: &&u32| !params.spring_cut[**spring as usize];
