@@ -9,6 +9,7 @@
 //! - [`stripe`]: springs of consecutive points to neighbours at one offset, with plain vector loads.
 //! - [`packed`]: all other springs, whose far ends are gathered.
 //! - [`laws`]: stiffness, damping and rest length, packed in the order of their use.
+//! - [`loose`]: the few springs whose ends lie too far apart for either.
 //! - [`integrate`]: gravity, contact and the move of a block's points.
 //! - [`region`]: the points that one thread has; [`sweep`]: the pass through them.
 //! - [`team`]: all regions, and what they tell each other.
@@ -33,6 +34,7 @@ mod energy;
 mod integrate;
 mod laws;
 mod level;
+mod loose;
 mod packed;
 mod plan;
 mod region;

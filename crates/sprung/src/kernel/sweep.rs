@@ -96,7 +96,7 @@ impl Sweep<'_> {
         }
         for index in block.bundles.clone() {
             let forces = &mut forces.packed[far_at..];
-            packed::accumulate(points, plan, laws, index, forces, springs);
+            packed::accumulate(region.points.onwards(first), plan, laws, index, forces, springs);
         }
     }
 
