@@ -47,17 +47,20 @@ mod tests;
 
 pub(crate) use energy::Screen;
 pub use level::Level;
+#[cfg(test)]
+pub(crate) use plan::stripes_and_loose;
+pub(crate) use plan::{WINDOW, are_long_stripes_worth_it, makes_a_stripe};
 pub(crate) use team::Team;
 
 /// Points that are swept together: their forces stay in the nearest cache.
-const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 256;
 
 /// Blocks whose packed springs are evaluated together, before the first of them: the more there are to choose from, the
 /// fewer lanes stay empty.
 const GROUP: usize = 4;
 
 /// Springs that go through the arithmetic together: several vectors, so that one's waiting is another's work.
-const LANES: usize = 32;
+pub(crate) const LANES: usize = 32;
 
 /// A value for each of the springs that go through together, or of so many points.
 type Lanes = [f32; LANES];

@@ -99,6 +99,13 @@ pub(crate) fn are_long_stripes_worth_it(in_long_stripes: usize, springs: usize) 
     in_long_stripes == 0 || in_long_stripes * LONG >= springs
 }
 
+/// How many of a model's springs are in stripes, and how many are loose.
+#[cfg(test)]
+pub(crate) fn stripes_and_loose(model: &Model) -> [usize; 2] {
+    let plan = Plan::new(model);
+    [plan.stripe_springs.len(), plan.loose.len()]
+}
+
 impl Plan {
     pub fn new(model: &Model) -> Self {
         let plan = Self::with_stripes(model, usize::MAX);
