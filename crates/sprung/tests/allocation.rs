@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use allocation_counter::{measure, opt_out};
 use common::scenes;
-use sprung::{Change, Grab, Simulation, Vec3, Workers};
+use sprung::{Change, Grab, Material, ModelBuilder, Simulation, Vec3, Workers};
 
 /// A hundred steps: the watch looks at five of them and keeps each as the last good state.
 const STEPS: u64 = 100;
@@ -59,6 +59,47 @@ fn threads_allocate_nothing() {
     assert_steps_allocate_nothing(&mut run, 25, "a large cloth, driven");
     assert!(workers.called.load(Ordering::Relaxed) > 50, "it is large enough for several threads");
     assert_eq!(workers.taken.load(Ordering::Relaxed), 0, "allocations on worker threads");
+}
+
+/// A chain of two large halves whose ends are joined, further apart than a sweep sees.
+#[test]
+fn springs_across_a_whole_model_allocate_nothing_and_cost_no_threads() {
+    let points = 140_000;
+    let mut builder = ModelBuilder::new();
+    for point in 0..points {
+        builder.add_point(Vec3::X * point as f32, 1.0).expect("allowed");
+    }
+    let chain = (1..points).map(|point| [point - 1, point]);
+    let across = (0..100).map(|point| [3 * point, points - 1 - 5 * point]);
+    for [a, b] in chain.chain(across) {
+        builder.add_spring(a, b, Material { stiffness: 100.0, damping: 1.0 }).expect("allowed");
+    }
+    let mut run = builder.simulation().expect("there are points");
+    run.keep_history(0);
+    let workers = Arc::new(Counting::default());
+    run.set_workers(workers.clone());
+    assert_steps_allocate_nothing(&mut run, 25, "a joined chain");
+    assert!(workers.called.load(Ordering::Relaxed) >= 26, "it is large enough for several threads");
+}
+
+/// Packed springs are gathered through windows of 65,536 points. A small model has room for one beyond its positions, those of
+/// the last good state and its forces, and no more.
+#[test]
+fn a_copy_of_a_small_network_is_small() {
+    let mut builder = ModelBuilder::new();
+    for point in 0..50 {
+        let at = [7, 11, 13].map(|way| (point * way % 50) as f32);
+        builder.add_point(Vec3::from_array(at), 1.0).expect("allowed");
+    }
+    builder.connect_within(0..50, 15.0, Material { stiffness: 100.0, damping: 1.0 }).expect("allowed");
+    let mut run = builder.simulation().expect("there are points");
+    run.keep_history(0);
+    run.steps(100).expect("it is stable");
+    let taken = measure(|| drop(run.clone()));
+    let (coordinate, force) = (4, 16);
+    let windows = 65_536 * (2 * coordinate + force);
+    assert!(taken.bytes_total < windows + 200_000, "{} bytes", taken.bytes_total);
+    assert!(taken.bytes_total > windows, "it has packed springs");
 }
 
 /// After the first step, which may make room for what was changed.

@@ -4,26 +4,41 @@
 const LINE: usize = 16;
 
 /// So many arrays of floats of the same length, each beginning at a cache line; zeros at first.
+///
+/// Some are read through windows of a fixed length, however short they are: a window that reaches beyond the end of an array
+/// shows the next one, and beyond the last there is room to spare.
 #[derive(Debug, Default)]
 pub(super) struct Arrays<const N: usize> {
     buffer: Vec<f32>,
     start: usize,
     stride: usize,
     len: usize,
+    spare: usize,
 }
 
 impl<const N: usize> Arrays<N> {
     pub fn new(len: usize) -> Self {
+        Self::with_windows(len, 0)
+    }
+
+    /// Arrays in which windows of so many floats may begin anywhere.
+    pub fn with_windows(len: usize, spare: usize) -> Self {
         // Some lines more than needed: arrays a multiple of 4096 bytes apart would compete for the same lines of the cache.
         let stride = len.next_multiple_of(LINE) + 23 * LINE;
-        let buffer = vec![0.0; N * stride + LINE];
+        // Room to spare costs nothing where the system makes zeros only when they are touched.
+        let buffer = vec![0.0; N * stride + LINE + spare];
         let start = buffer.as_ptr().align_offset(LINE * size_of::<f32>()).min(LINE);
-        Self { buffer, start, stride, len }
+        Self { buffer, start, stride, len, spare }
     }
 
     /// Floats in each array.
     pub fn len(&self) -> usize {
         self.len
+    }
+
+    /// How long a window may be.
+    pub fn spare(&self) -> usize {
+        self.spare
     }
 
     /// The arrays.
@@ -32,6 +47,16 @@ impl<const N: usize> Arrays<N> {
         let mut all: [&[f32]; N] = [&[]; N];
         for (index, array) in all.iter_mut().enumerate() {
             *array = &self.buffer[self.start + index * self.stride..][..self.len];
+        }
+        all
+    }
+
+    /// What lies from a place of each array on, until the end of all.
+    #[inline(always)]
+    pub fn onwards(&self, from: usize) -> [&[f32]; N] {
+        let mut all: [&[f32]; N] = [&[]; N];
+        for (index, array) in all.iter_mut().enumerate() {
+            *array = &self.buffer[self.start + index * self.stride + from..];
         }
         all
     }
@@ -51,14 +76,14 @@ impl<const N: usize> Arrays<N> {
 impl<const N: usize> Clone for Arrays<N> {
     /// A copy lies elsewhere, so that its lines begin elsewhere.
     fn clone(&self) -> Self {
-        let mut copy = Self::new(self.len);
+        let mut copy = Self::with_windows(self.len, self.spare);
         copy.clone_from(self);
         copy
     }
 
     fn clone_from(&mut self, source: &Self) {
-        if (self.len, self.stride) != (source.len, source.stride) {
-            *self = Self::new(source.len);
+        if (self.len, self.spare) != (source.len, source.spare) {
+            *self = Self::with_windows(source.len, source.spare);
         }
         let floats = N * source.stride;
         self.buffer[self.start..][..floats].copy_from_slice(&source.buffer[source.start..][..floats]);

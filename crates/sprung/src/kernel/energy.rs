@@ -160,7 +160,8 @@ impl Survey<'_> {
         }
         for bundle in plan.blocks[index].bundles.clone() {
             let Bundle { points: begins, rows } = &plan.bundles[bundle];
-            let windows = points.map(window);
+            let [x, y, z, ..] = region.points.onwards(first);
+            let windows = [x, y, z].map(window);
             let near = windows.map(|array| gather(array, begins));
             for (set, row) in rows.clone().enumerate() {
                 let far = windows.map(|array| gather(array, &plan.rows[row]));

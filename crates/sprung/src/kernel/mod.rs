@@ -9,6 +9,7 @@
 //! - [`stripe`]: springs of consecutive points to neighbours at one offset, with plain vector loads.
 //! - [`packed`]: all other springs, whose far ends are gathered.
 //! - [`laws`]: stiffness, damping and rest length, packed in the order of their use.
+//! - [`loose`]: the few springs whose ends lie too far apart for either.
 //! - [`integrate`]: gravity, contact and the move of a block's points.
 //! - [`region`]: the points that one thread has; [`sweep`]: the pass through them.
 //! - [`team`]: all regions, and what they tell each other.
@@ -33,6 +34,7 @@ mod energy;
 mod integrate;
 mod laws;
 mod level;
+mod loose;
 mod packed;
 mod plan;
 mod region;
@@ -45,17 +47,20 @@ mod tests;
 
 pub(crate) use energy::Screen;
 pub use level::Level;
+#[cfg(test)]
+pub(crate) use plan::stripes_and_loose;
+pub(crate) use plan::{WINDOW, are_long_stripes_worth_it, makes_a_stripe};
 pub(crate) use team::Team;
 
 /// Points that are swept together: their forces stay in the nearest cache.
-const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 256;
 
 /// Blocks whose packed springs are evaluated together, before the first of them: the more there are to choose from, the
 /// fewer lanes stay empty.
 const GROUP: usize = 4;
 
 /// Springs that go through the arithmetic together: several vectors, so that one's waiting is another's work.
-const LANES: usize = 32;
+pub(crate) const LANES: usize = 32;
 
 /// A value for each of the springs that go through together, or of so many points.
 type Lanes = [f32; LANES];

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::loose::{Loose, LooseEnd, ends_by_place};
 use super::{BLOCK, GROUP, LANES};
 use crate::buckets::Buckets;
 use crate::model::Model;
@@ -14,7 +15,12 @@ pub(super) const WORTH: f64 = 0.4;
 pub(super) const FEW: usize = 8;
 
 /// Ends of packed springs lie less than this many places after the beginning of their group: 16 bits say which.
-pub(super) const WINDOW: usize = 1 << 16;
+pub(crate) const WINDOW: usize = 1 << 16;
+
+/// Stripes that reach beyond the window are made where they hold at least one in so many of all springs. A region needs as
+/// many of its neighbour's points as stripes reach: fewer springs are better loose, each at some 60 times the cost of one in
+/// a stripe, than that they cost a second thread.
+pub(super) const LONG: usize = 128;
 
 /// Packed springs of one point in one lane; a point with more takes several lanes. Fewer would leave fewer lanes empty,
 /// and gather each point more often.
@@ -37,11 +43,15 @@ pub(crate) struct Plan {
     pub rows: Vec<[u16; LANES]>,
     /// The springs of each row, or [`NONE`].
     row_springs: Vec<[u32; LANES]>,
-    /// Springs to points beyond the window.
+    /// Springs to points beyond the window that are in no stripe, and their ends by place.
     pub loose: Vec<Loose>,
-    /// The largest offset of a stripe, or for packed springs how far beyond the first point of its group one ends, in places:
-    /// beyond the block where it begins no force reaches further.
-    pub reach: usize,
+    pub loose_ends: Vec<LooseEnd>,
+    /// The largest offset of a stripe, in places.
+    pub stripe_reach: usize,
+    /// How far beyond the first point of its group a packed spring ends, in places, at the most.
+    pub packed_reach: usize,
+    /// Springs in stripes that reach beyond the window.
+    long: usize,
 }
 
 /// What is evaluated at one block, as ranges of the plan's lists: its stripes, and at the first of a group its bundles.
@@ -67,14 +77,6 @@ pub(super) struct Bundle {
     pub rows: Range<usize>,
 }
 
-/// A spring whose ends lie far apart in the hidden order.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Loose {
-    pub spring: u32,
-    /// Places of the two ends.
-    pub ends: [u32; 2],
-}
-
 /// A spring of a block that is being planned.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Planned {
@@ -84,8 +86,38 @@ struct Planned {
     spring: u32,
 }
 
+/// Whether so many springs of one offset, that begin in so many sets of lanes of a block, are worth a stripe. `in_block` springs
+/// of any offset begin in the block: if they are few, all within the window make stripes.
+pub(crate) fn makes_a_stripe(springs: usize, sets: usize, offset: usize, in_block: usize) -> bool {
+    let is_few = in_block <= FEW && offset < WINDOW;
+    is_few || springs as f64 >= WORTH * (sets * LANES) as f64
+}
+
+/// Whether stripes that reach beyond the window are made, where they would hold so many of all springs; yes if they would hold
+/// none.
+pub(crate) fn are_long_stripes_worth_it(in_long_stripes: usize, springs: usize) -> bool {
+    in_long_stripes == 0 || in_long_stripes * LONG >= springs
+}
+
+/// How many of a model's springs are in stripes, and how many are loose.
+#[cfg(test)]
+pub(crate) fn stripes_and_loose(model: &Model) -> [usize; 2] {
+    let plan = Plan::new(model);
+    [plan.stripe_springs.len(), plan.loose.len()]
+}
+
 impl Plan {
     pub fn new(model: &Model) -> Self {
+        let plan = Self::with_stripes(model, usize::MAX);
+        if are_long_stripes_worth_it(plan.long, plan.springs) {
+            return plan;
+        }
+        drop(plan);
+        Self::with_stripes(model, WINDOW)
+    }
+
+    /// A plan with stripes of offsets below some limit.
+    fn with_stripes(model: &Model, limit: usize) -> Self {
         let points = model.point_count();
         let block_count = points.div_ceil(BLOCK);
         let mut plan = Self {
@@ -98,7 +130,10 @@ impl Plan {
             rows: Vec::new(),
             row_springs: Vec::new(),
             loose: Vec::new(),
-            reach: 0,
+            loose_ends: Vec::new(),
+            stripe_reach: 0,
+            packed_reach: 0,
+            long: 0,
         };
         let block_of = |spring: u32| model.places(spring)[0] as usize / BLOCK;
         let springs = 0..model.spring_count() as u32;
@@ -114,7 +149,7 @@ impl Plan {
                 }));
                 springs.sort_unstable();
                 let before = packed.len();
-                plan.push_block(&springs, &mut packed);
+                plan.push_block(&springs, limit, &mut packed);
                 packed[before..]
                     .iter_mut()
                     .for_each(|spring| spring.near += ((block - group) * BLOCK) as u32);
@@ -123,12 +158,18 @@ impl Plan {
         }
         plan.stripes.shrink_to_fit();
         plan.stripe_springs.shrink_to_fit();
+        plan.loose_ends = ends_by_place(&plan.loose);
         plan
+    }
+
+    /// Beyond the block where it begins no force reaches further than this, in places, but for those of loose springs.
+    pub fn reach(&self) -> usize {
+        self.stripe_reach.max(self.packed_reach)
     }
 
     /// How many blocks before its own a region must sweep too.
     pub fn border_blocks(&self) -> usize {
-        self.reach.div_ceil(GROUP * BLOCK) * GROUP
+        self.reach().div_ceil(GROUP * BLOCK) * GROUP
     }
 
     /// The springs of a stripe, by ascending place of their first end.
@@ -141,11 +182,18 @@ impl Plan {
         self.row_springs[row].map(|spring| (spring != NONE).then_some(spring as usize))
     }
 
-    /// Makes stripes of a block's springs; what is left over goes to `packed`.
-    fn push_block(&mut self, springs: &[Planned], packed: &mut Vec<Planned>) {
+    /// Makes stripes of a block's springs, of offsets below `limit`; what is left over goes to `packed`.
+    fn push_block(&mut self, springs: &[Planned], limit: usize, packed: &mut Vec<Planned>) {
         let stripes = self.stripes.len();
         for same_offset in springs.chunk_by(|a, b| a.offset == b.offset) {
-            self.push_stripe(same_offset, springs.len() <= FEW, packed);
+            let offset = same_offset[0].offset as usize;
+            let sets =
+                same_offset.chunk_by(|a, b| a.near as usize / LANES == b.near as usize / LANES).count();
+            if offset < limit && makes_a_stripe(same_offset.len(), sets, offset, springs.len()) {
+                self.push_stripe(same_offset, packed);
+            } else {
+                packed.extend_from_slice(same_offset);
+            }
         }
         let bundles = self.bundles.len();
         self.blocks.push(BlockPlan { stripes: stripes..self.stripes.len(), bundles: bundles..bundles });
@@ -162,7 +210,7 @@ impl Plan {
             if is_loose {
                 self.loose.push(Loose { spring, ends: [first + near, first + near + offset] });
             } else {
-                self.reach = self.reach.max(near as usize + offset as usize);
+                self.packed_reach = self.packed_reach.max(near as usize + offset as usize);
             }
             !is_loose
         });
@@ -170,24 +218,18 @@ impl Plan {
         self.blocks[group].bundles = bundles..self.bundles.len();
     }
 
-    /// Makes a stripe of a block's springs of one offset if that is worth it, or if the block has few; what is left over goes
-    /// to `packed`.
-    fn push_stripe(&mut self, springs: &[Planned], is_few: bool, packed: &mut Vec<Planned>) {
-        let sets = springs.chunk_by(|a, b| a.near as usize / LANES == b.near as usize / LANES).count();
+    /// Makes a stripe of a block's springs of one offset; of springs side by side all but the first go to `packed`.
+    fn push_stripe(&mut self, springs: &[Planned], packed: &mut Vec<Planned>) {
         let offset = springs[0].offset as usize;
-        let is_worth_it = is_few || springs.len() as f64 >= WORTH * (sets * LANES) as f64;
-        if !is_worth_it || offset >= WINDOW {
-            packed.extend_from_slice(springs);
-            return;
-        }
         let begin = self.stripe_springs.len();
-        // Of springs side by side the first goes into the stripe.
         for beside in springs.chunk_by(|a, b| a.near == b.near) {
             self.stripe_springs.push(beside[0].spring);
             packed.extend_from_slice(&beside[1..]);
         }
-        self.stripes.push(Stripe { offset, springs: begin..self.stripe_springs.len() });
-        self.reach = self.reach.max(offset);
+        let springs = begin..self.stripe_springs.len();
+        self.long += if offset < WINDOW { 0 } else { springs.len() };
+        self.stripes.push(Stripe { offset, springs });
+        self.stripe_reach = self.stripe_reach.max(offset);
     }
 
     /// Bundles of a group's packed springs, which are sorted by point. Points with as many springs share a bundle.

@@ -35,7 +35,7 @@ pub(crate) struct Region {
 }
 
 /// Sums of forces while they are needed.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Forces {
     /// On the points of one block, from springs that begin there.
     pub near: Arrays<3>,
@@ -45,22 +45,25 @@ pub(super) struct Forces {
     pub packed: Vec<Force>,
     /// Blocks in a slide.
     slide: usize,
-    /// How far beyond a set its springs' forces may reach, in whole sets.
-    pub reach: usize,
+    /// How far the forces of stripes may reach beyond the set of points where they begin, in whole sets.
+    pub far_reach: usize,
+    /// How far beyond a block the forces of packed springs may reach.
+    packed_reach: usize,
 }
 
 impl Region {
     /// A region of these blocks.
     pub fn new(plan: &Plan, blocks: Range<usize>) -> Self {
         let first_block = blocks.start.saturating_sub(plan.border_blocks());
-        let beyond = if plan.bundles.is_empty() { plan.reach + BLOCK } else { WINDOW + LANES };
-        let len = (blocks.end - first_block) * BLOCK + beyond;
+        // As far as its springs reach; and as blocks are read whole, one to spare.
+        let len = (blocks.end - first_block) * BLOCK + plan.reach() + BLOCK;
+        let window = if plan.bundles.is_empty() { 0 } else { WINDOW };
         Self {
             forces: Forces::new(plan, blocks.end - first_block),
             energies: vec![Sums::default(); blocks.len()],
             blocks,
             first_block,
-            points: Arrays::new(len),
+            points: Arrays::with_windows(len, window),
             low: Arrays::new(len),
             other: None,
             inverse_mass: Arrays::new(len),
@@ -69,8 +72,8 @@ impl Region {
 
     /// Makes memory for a state that is kept, if there is none.
     pub fn prepare_to_keep(&mut self) {
-        let len = self.points.len();
-        self.other.get_or_insert_with(|| [Arrays::new(len), Arrays::new(len)]);
+        let alike = |arrays: &Arrays<6>| Arrays::with_windows(arrays.len(), arrays.spare());
+        self.other.get_or_insert_with(|| [alike(&self.points), alike(&self.low)]);
     }
 
     /// Goes on with the other arrays.
@@ -86,40 +89,61 @@ impl Region {
     pub fn index(&self, place: usize) -> usize {
         place - self.first_block * BLOCK
     }
+
+    /// Whether a place is one of its own, or of a region before it.
+    pub fn is_before_end(&self, place: u32) -> bool {
+        (place as usize) < self.blocks.end * BLOCK
+    }
+}
+
+impl Clone for Forces {
+    /// Empty ones as large: every sweep begins its sums anew.
+    fn clone(&self) -> Self {
+        Self {
+            near: Arrays::new(self.near.len()),
+            far: Arrays::new(self.far.len()),
+            packed: vec![[0.0; 4]; self.packed.len()],
+            ..*self
+        }
+    }
 }
 
 impl Forces {
     fn new(plan: &Plan, blocks: usize) -> Self {
-        let reach = plan.reach.next_multiple_of(LANES);
-        let slide = blocks.clamp(1, LEAST_SLIDE.max(4 * reach / BLOCK)).next_multiple_of(GROUP);
+        let [far_reach, packed_reach] =
+            [plan.stripe_reach, plan.packed_reach].map(|reach| reach.next_multiple_of(LANES));
+        let slide = blocks.clamp(1, LEAST_SLIDE.max(4 * plan.reach() / BLOCK)).next_multiple_of(GROUP);
         let packed = if plan.bundles.is_empty() { 0 } else { slide * BLOCK + WINDOW };
         Self {
             near: Arrays::new(BLOCK),
-            far: Arrays::new(slide * BLOCK + reach),
+            far: Arrays::new(slide * BLOCK + far_reach),
             packed: vec![[0.0; 4]; packed],
             slide,
-            reach,
+            far_reach,
+            packed_reach,
         }
     }
 
     /// Before the block that is swept as number `count`: where its points are in `far`. Sets the forces of packed springs
-    /// to zero as far as this block is the first to reach, and those of stripes as far as the ones before it would have.
+    /// to zero as far as this block is the first to reach. Those of stripes each set sets to zero for itself; before the
+    /// first there is nobody who would have.
     #[inline(always)]
     pub fn begin_block(&mut self, count: usize) -> usize {
-        let Self { far, packed, slide, reach, .. } = self;
-        let first = count % *slide * BLOCK;
-        let mut unused = first + *reach..first + *reach + BLOCK;
-        if count == 0 {
-            unused.start = 0;
-            far.all_mut().into_iter().for_each(|sums| sums[..*reach].fill(0.0));
-        } else if first == 0 {
-            let begun = *slide * BLOCK..*slide * BLOCK + *reach;
-            far.all_mut().into_iter().for_each(|sums| sums.copy_within(begun.clone(), 0));
-            if !packed.is_empty() {
-                packed.copy_within(begun, 0);
+        let Self { far, packed, slide, far_reach, packed_reach, .. } = self;
+        let (first, begun) = (count % *slide * BLOCK, *slide * BLOCK);
+        let slides = first == 0 && count > 0;
+        for sums in far.all_mut() {
+            if slides {
+                sums.copy_within(begun..begun + *far_reach, 0);
+            } else if count == 0 {
+                sums[..*far_reach].fill(0.0);
             }
         }
         if !packed.is_empty() {
+            if slides {
+                packed.copy_within(begun..begun + *packed_reach, 0);
+            }
+            let unused = if count == 0 { 0 } else { first + *packed_reach }..first + *packed_reach + BLOCK;
             packed[unused].fill([0.0; 4]);
         }
         first

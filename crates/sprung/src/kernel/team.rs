@@ -3,6 +3,7 @@
 //! Before a step a region copies its neighbours' points as far as springs reach, and after it leaves its own for them, in
 //! one of two sets in turn: one is read while the other is written, so that one fork and join for each step is enough.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -13,12 +14,11 @@ use super::energy::{Screen, Sums, Survey};
 use super::integrate::Field;
 use super::laws::Laws;
 use super::level::{Checked, Level};
+use super::loose::LooseMotions;
 use super::plan::Plan;
 use super::region::Region;
-use super::spring::tension;
 use super::sweep::{Purpose, Push, PushKind, Sweep};
 use super::{BLOCK, GROUP};
-use crate::math;
 use crate::model::Model;
 use crate::params::{Grab, Params};
 use crate::state::State;
@@ -52,6 +52,7 @@ pub(crate) struct Team {
     borders: [Vec<Mutex<Border>>; 2],
     /// Whether regions have yet to copy what their neighbours left.
     are_behind: bool,
+    loose: LooseMotions,
     pushes: Vec<Push>,
     /// Whether the state that is [kept](Self::keep) is the current one; if not, it is in the regions' other arrays.
     are_kept_here: bool,
@@ -81,6 +82,7 @@ impl Clone for Team {
             regions,
             borders,
             are_behind: self.are_behind,
+            loose: self.loose.clone(),
             pushes: self.pushes.clone(),
             are_kept_here: self.are_kept_here,
         }
@@ -92,6 +94,7 @@ impl Team {
         let plan = Plan::new(model);
         let laws = Laws::new(&plan, model, params);
         let mut team = Self {
+            loose: LooseMotions::new(&plan),
             plan: Arc::new(plan),
             laws: Arc::new(laws),
             level: Checked::new(Level::best()),
@@ -206,7 +209,7 @@ impl Team {
 
     /// The energies of this state, with a bound on how far they are off; the same bits for any number of threads.
     pub fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
-        let Self { plan, laws, level, regions, borders, are_behind, .. } = self;
+        let Self { plan, laws, level, regions, borders, are_behind, loose, .. } = self;
         let (gravity, planes) = (params.gravity, &params.planes[..]);
         for_each(regions.len(), workers, &|index| {
             let mut region = lock(&regions[index]);
@@ -220,14 +223,11 @@ impl Team {
         for region in &mut *regions {
             own(region).energies.iter().for_each(|block| sums.add(block));
         }
-        for (loose, law) in plan.loose.iter().zip(&laws.loose) {
-            let Some(law) = *law else { continue };
-            // Loose springs end anywhere: there is one region then, which has all points.
-            let [x, y, z, ..] = own(&mut regions[0]).points.all();
-            sums.add_spring(
-                law,
-                loose.ends.map(|place| place as usize).map(|at| Vec3::new(x[at], y[at], z[at])),
-            );
+        let motions = loose.read(plan, regions.iter_mut().map(|region| &*own(region)));
+        for (law, [[near, _], [far, _]]) in laws.loose.iter().zip(motions) {
+            if let Some(law) = *law {
+                sums.add_spring(law, [*near, *far]);
+            }
         }
         Screen::new(sums, laws.norms, plan)
     }
@@ -326,21 +326,8 @@ impl Team {
 
     /// The forces on single points, by place.
     fn gather_pushes(&mut self, model: &Model, params: &Params) {
-        let Self { plan, laws, pushes, .. } = self;
+        let Self { plan, laws, regions, loose, pushes, .. } = self;
         pushes.clear();
-        for (loose, law) in plan.loose.iter().zip(&laws.loose) {
-            let Some(law) = *law else { continue };
-            // Loose springs end anywhere: there is one region then, which has all points.
-            let region = own(&mut self.regions[0]);
-            let motion = loose.ends.map(|place| {
-                let [x, y, z, u, v, w] = region.points.all().map(|array| array[place as usize]);
-                [Vec3::new(x, y, z), Vec3::new(u, v, w)]
-            });
-            let force = pull(law, motion);
-            for (place, force) in loose.ends.into_iter().zip([force, -force]) {
-                pushes.push(Push { place: place as usize, kind: PushKind::Constant(force) });
-            }
-        }
         for (&point, &force) in &params.external_forces {
             pushes.push(Push { place: model.place_of(point), kind: PushKind::Constant(force) });
         }
@@ -350,13 +337,14 @@ impl Team {
             pushes.push(Push { place: model.place_of(point), kind });
         }
         pushes.sort_by_key(|push| push.place);
+        if !plan.loose.is_empty() {
+            loose.read(plan, regions.iter_mut().map(|region| &*own(region)));
+            loose.merge_into(pushes, plan, laws);
+        }
     }
 
     /// How many regions so many threads are best given.
     fn wanted_regions(&self, threads: usize) -> usize {
-        if !self.plan.loose.is_empty() {
-            return 1;
-        }
         let Worth { springs, blocks_per_border } = self.worth;
         let by_blocks = self.plan.blocks.len() / (blocks_per_border * self.plan.border_blocks()).max(1);
         threads.min(self.plan.springs / springs).min(by_blocks).max(1)
@@ -409,12 +397,15 @@ impl Team {
             _ => (work * region / count - (region - 1) * border).next_multiple_of(GROUP),
         };
         let ranges = (0..count).map(|region| end(region)..end(region + 1));
-        self.regions = ranges.map(|blocks| Mutex::new(Region::new(&self.plan, blocks))).collect();
         let borders = || {
-            let border = Border { first: Arrays::new(self.plan.reach), last: Arrays::new(border * BLOCK) };
-            if count > 1 { vec![border; count].into_iter().map(Mutex::new).collect() } else { Vec::new() }
+            let border = |blocks: Range<usize>| Border {
+                first: Arrays::new(self.plan.reach().min(blocks.len() * BLOCK)),
+                last: Arrays::new(border * BLOCK),
+            };
+            if count > 1 { ranges.clone().map(border).map(Mutex::new).collect() } else { Vec::new() }
         };
         self.borders = [borders(), borders()];
+        self.regions = ranges.map(|blocks| Mutex::new(Region::new(&self.plan, blocks))).collect();
         (self.are_behind, self.are_kept_here) = (false, false);
     }
 
@@ -467,12 +458,6 @@ fn receive(region: &mut Region, borders: &[Mutex<Border>], index: usize) {
             points[end..end + first.len()].copy_from_slice(first);
         }
     }
-}
-
-/// The force on the first end of one spring, N.
-fn pull(law: [f32; 3], [[x_i, v_i], [x_j, v_j]]: [[Vec3; 2]; 2]) -> Vec3 {
-    let (axis, apart) = (x_i - x_j, v_i - v_j);
-    axis * -tension(math::dot(axis, axis), math::dot(apart, axis), law)
 }
 
 /// Writes pairs of vectors, the first three arrays and the last three.

@@ -8,7 +8,7 @@ use super::Parts;
 use crate::build::{Material, ModelBuilder};
 use crate::contact::{ContactLaw, Plane};
 use crate::model::{HiddenOrder, Model};
-use crate::params::Grab;
+use crate::params::{Grab, Params};
 
 /// Random numbers, the same on every machine (Steele, Lea, Flood 2014, *Fast splittable pseudorandom number generators*).
 pub struct Random(pub u64);
@@ -57,6 +57,21 @@ const MATERIAL: Material = Material { stiffness: 20.0, damping: 0.1 };
 ///
 /// In the first half all springs are alike but for their rest lengths; in the second some are not, and some are cut. The springs are so soft that a hundred steps are stable.
 pub fn mixed(seed: u64, points: usize, far: bool) -> Parts {
+    mixed_with(seed, points, |random, count| {
+        let long = if far { count / 20 } else { 0 };
+        (0..long).map(|_| [random.below(count), random.below(count)]).collect()
+    })
+}
+
+/// The same with some springs from the first points to the last ones, among which some points have several.
+pub fn ring(seed: u64, points: usize, long: usize) -> Parts {
+    mixed_with(seed, points, |random, count| {
+        (0..long).map(|_| [random.below(99), count - 1 - random.below(2_000)]).collect()
+    })
+}
+
+/// A mixed network with springs that some function adds to so many points.
+fn mixed_with(seed: u64, points: usize, long: impl Fn(&mut Random, usize) -> Vec<[usize; 2]>) -> Parts {
     let random = &mut Random(seed);
     let mut builder = ModelBuilder::new();
     while builder.point_count() < points {
@@ -100,11 +115,8 @@ pub fn mixed(seed: u64, points: usize, far: bool) -> Parts {
             join(&mut builder, random, hub, hub - spoke / 2 - 1);
         }
     }
-    if far {
-        for _ in 0..count / 20 {
-            let (a, b) = (random.below(count), random.below(count));
-            join(&mut builder, random, a, b);
-        }
+    for [a, b] in long(random, count) {
+        join(&mut builder, random, a, b);
     }
     let (model, params, state) = builder.parts().expect("there are points");
     let mut parts = Parts { model, params, state };
@@ -184,6 +196,28 @@ fn drive(Parts { model, params, state }: &mut Parts, random: &mut Random) {
     for (low, x) in state.position_low.iter_mut().zip(&state.position) {
         *low = random.vector() * *x * 2e-8;
     }
+}
+
+/// A lattice of layers of so many points, numbered layer by layer, each point joined to the next one and to two of the next
+/// layer, and a few to others nearby. The user's order stays.
+pub fn layers(seed: u64, layer: usize, points: usize) -> Parts {
+    let random = &mut Random(seed);
+    let mut builder = ModelBuilder::new();
+    for _ in 0..points {
+        let point = builder.add_point(random.vector(), 1.0).expect("allowed");
+        builder.set_velocity(point, random.vector()).expect("allowed");
+    }
+    for point in 0..points {
+        let nearby = point + 2 + random.below(NEAR);
+        let neighbours = [point + 1, point + layer, point + layer + 1, nearby];
+        let kinds = if random.one_in(30) { 4 } else { 3 };
+        for &other in neighbours[..kinds].iter().filter(|other| **other < points) {
+            builder.add_spring(point, other, MATERIAL).expect("allowed");
+        }
+    }
+    let (mut model, params, state) = builder.parts().expect("there are points");
+    model.hidden_order = HiddenOrder::default();
+    Parts::new((model, Params { dt: 0.002, ..params }, state))
 }
 
 /// The same model, gone through in some order.

@@ -12,7 +12,7 @@ use crate::model::HiddenOrder;
 use crate::scene::BUILTIN;
 
 /// Compares so many steps.
-fn assert_is_the_twin(name: &str, parts: &Parts, steps: u64) {
+pub fn assert_is_the_twin(name: &str, parts: &Parts, steps: u64) {
     let (order, mut state) = (Order::new(&parts.model), parts.state.clone());
     let mut team = parts.team(Level::best());
     for step in 1..=steps {

@@ -15,7 +15,7 @@ const THREADS: [usize; 4] = [1, 2, 3, 7];
 
 /// Compares all levels and all numbers of regions that a model allows with one region of the narrowest vectors; gives the
 /// numbers of regions. `at_least` is the largest that must be among them.
-fn assert_same_bits(name: &str, parts: &Parts, steps: u64, at_least: usize) {
+pub fn assert_same_bits(name: &str, parts: &Parts, steps: u64, at_least: usize) {
     let levels = Level::available();
     let mut plain = parts.team(levels[0]);
     parts.advance(&mut plain, steps, 1);

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::Parts;
 use crate::contact::{ContactLaw, Plane};
-use crate::kernel::plan::{FEW, MOST_ROWS, WINDOW, WORTH};
+use crate::kernel::plan::{FEW, LONG, MOST_ROWS, WINDOW, WORTH};
 use crate::kernel::{BLOCK, GROUP, LANES};
 use crate::math::COINCIDENT_SQUARED;
 use crate::model::Model;
@@ -26,20 +26,29 @@ pub struct Order {
 
 impl Order {
     pub fn new(model: &Model) -> Self {
+        let order = Self::with_stripes(model, u32::MAX);
+        let offset = |&spring: &u32| model.places(spring)[1] - model.places(spring)[0];
+        let long = order.stripes.iter().filter(|spring| offset(spring) as usize >= WINDOW).count();
+        let are_worth_it = long * LONG >= model.spring_count();
+        if are_worth_it { order } else { Self::with_stripes(model, WINDOW as u32) }
+    }
+
+    /// With stripes of offsets below a limit.
+    fn with_stripes(model: &Model, limit: u32) -> Self {
         let mut order = Self { stripes: Vec::new(), bundles: Vec::new(), loose: Vec::new() };
         let mut by_block = vec![Vec::new(); model.point_count().div_ceil(BLOCK)];
         for spring in 0..model.spring_count() as u32 {
             by_block[model.places(spring)[0] as usize / BLOCK].push(spring);
         }
-        by_block.chunks(GROUP).for_each(|blocks| order.push_group(model, blocks));
+        by_block.chunks(GROUP).for_each(|blocks| order.push_group(model, limit, blocks));
         order
     }
 
     /// The springs that begin in one group of blocks.
-    fn push_group(&mut self, model: &Model, blocks: &[Vec<u32>]) {
+    fn push_group(&mut self, model: &Model, limit: u32, blocks: &[Vec<u32>]) {
         let (mut at_point, mut loose) = (BTreeMap::<u32, Vec<(u32, u32)>>::new(), Vec::new());
         for springs in blocks {
-            for (near, offset, spring) in self.push_block(model, springs) {
+            for (near, offset, spring) in self.push_block(model, limit, springs) {
                 if near as usize % (GROUP * BLOCK) + offset as usize >= WINDOW {
                     loose.push((near, offset, spring));
                 } else {
@@ -56,7 +65,7 @@ impl Order {
     }
 
     /// The stripes of one block; gives the springs that are in none: where they begin, their offset and their number.
-    fn push_block(&mut self, model: &Model, springs: &[u32]) -> Vec<(u32, u32, u32)> {
+    fn push_block(&mut self, model: &Model, limit: u32, springs: &[u32]) -> Vec<(u32, u32, u32)> {
         // Springs by offset, and within an offset by place and then number.
         let mut by_offset = BTreeMap::<u32, Vec<(u32, u32)>>::new();
         for &spring in springs {
@@ -68,8 +77,9 @@ impl Order {
             springs.sort_unstable();
             let mut sets: Vec<u32> = springs.iter().map(|(near, _)| near / LANES as u32).collect();
             sets.dedup();
-            let is_worth_it = count <= FEW || springs.len() as f64 >= WORTH * (sets.len() * LANES) as f64;
-            let is_stripe = (offset as usize) < WINDOW && is_worth_it;
+            let is_few = count <= FEW && (offset as usize) < WINDOW;
+            let is_worth_it = is_few || springs.len() as f64 >= WORTH * (sets.len() * LANES) as f64;
+            let is_stripe = offset < limit && is_worth_it;
             let mut last = None;
             for (near, spring) in springs {
                 if is_stripe && last.replace(near) != Some(near) {
