@@ -5,6 +5,7 @@
 // Printing is what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod instructions;
 mod shell;
 mod stages;
 mod window;
@@ -35,6 +36,11 @@ const STAGES: &[Stage] = &[
         name: "release-tests",
         about: "golden hashes and stored pictures, optimised: the same as in debug",
         run: stages::release_tests,
+    },
+    Stage {
+        name: "instructions",
+        about: "the engine takes as many instructions as docs/benchmarks.md says",
+        run: instructions::instructions,
     },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },

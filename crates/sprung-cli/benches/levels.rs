@@ -4,8 +4,12 @@
 // Printing is what this program is for.
 #![allow(clippy::print_stdout)]
 
+#[path = "../../sprung/examples/networks/irregular.rs"]
+mod irregular;
+
 use std::time::Instant;
 
+use irregular::{Random, irregular};
 use sprung::scene::Scene;
 use sprung::solver::SymplecticEuler;
 use sprung::{Code, Error, Inline, Level, Material, ModelBuilder, Result, Simulation, Vec3, Workers};
@@ -18,9 +22,8 @@ const SPRINGS: usize = 20_000_000;
 const REPEATS: usize = 6;
 /// Speeds of the noise that every point starts with, m/s: a scene at rest tells nothing.
 const NOISE: f32 = 0.1;
-/// Points of the irregular network, and how many others each is joined to.
+/// Points of the irregular network.
 const POINTS: usize = 262_144;
-const NEIGHBOURS: f32 = 16.0;
 
 fn main() -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
@@ -69,7 +72,7 @@ fn main() -> Result<()> {
 fn simulation(name: &str) -> Result<Simulation> {
     match name.strip_suffix("-random") {
         Some(name) => renumbered(&Scene::builtin(name)?.simulation()?),
-        None if name == "irregular" => irregular(),
+        None if name == "irregular" => irregular(POINTS),
         None => Scene::builtin(name)?.simulation(),
     }
 }
@@ -102,49 +105,4 @@ fn renumbered(ordered: &Simulation) -> Result<Simulation> {
     let (model, mut own, state) = builder.build()?;
     (own.dt, own.planes, own.gravity) = (params.dt, params.planes.clone(), params.gravity);
     Simulation::new(model, own, state)
-}
-
-/// Points strewn over a cube, each joined to about 16 others, every rest length, stiffness and damping different.
-fn irregular() -> Result<Simulation> {
-    let (side, mut random) = (64.0, Random(3));
-    let mut builder = ModelBuilder::new();
-    for _ in 0..POINTS {
-        builder.add_point(random.point() * side, 1.0)?;
-    }
-    let sphere = 4.0 / 3.0 * std::f32::consts::PI;
-    let radius = side * (NEIGHBOURS / (sphere * POINTS as f32)).cbrt();
-    builder.connect_within(0..POINTS, radius, Material { stiffness: 100.0, damping: 1.0 })?;
-    let (model, mut params, state) = builder.build()?;
-    let mut vary =
-        |values: &[f32]| values.iter().map(|value| value * (0.5 + random.unit())).collect::<Vec<f32>>();
-    params.spring_stiffness = vary(&params.spring_stiffness).into();
-    params.spring_damping = vary(&params.spring_damping).into();
-    Simulation::new(model, params, state)
-}
-
-/// splitmix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// From 0 to 1.
-    fn unit(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1u32 << 24) as f32
-    }
-
-    /// In the unit cube.
-    fn point(&mut self) -> Vec3 {
-        Vec3::new(self.unit(), self.unit(), self.unit())
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
-    }
 }
