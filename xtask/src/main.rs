@@ -5,6 +5,7 @@
 // Printing is what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod levels;
 mod shell;
 mod stages;
 mod window;
@@ -36,6 +37,7 @@ const STAGES: &[Stage] = &[
         about: "golden hashes and stored pictures, optimised: the same as in debug",
         run: stages::release_tests,
     },
+    Stage { name: "levels", about: "the same bits with NEON and in WebAssembly", run: levels::levels },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
     Stage {
