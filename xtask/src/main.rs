@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod instructions;
+mod levels;
 mod shell;
 mod stages;
 mod window;
@@ -42,6 +43,7 @@ const STAGES: &[Stage] = &[
         about: "the engine takes as many instructions as docs/benchmarks.md says",
         run: instructions::instructions,
     },
+    Stage { name: "levels", about: "the same bits with NEON and in WebAssembly", run: levels::levels },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
     Stage {

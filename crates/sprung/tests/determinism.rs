@@ -34,6 +34,10 @@ impl Workers for Threads {
 
     fn run(&self, job: &(dyn Fn(usize) + Sync)) {
         self.called.fetch_add(1, Ordering::Relaxed);
+        // WebAssembly has no threads here: the work is divided as it would be among them, and done part by part.
+        if cfg!(target_family = "wasm") {
+            return (0..self.count).rev().for_each(job);
+        }
         std::thread::scope(|scope| {
             // The last worker first, so that finishing in order is nothing to rely on.
             for worker in (0..self.count).rev() {

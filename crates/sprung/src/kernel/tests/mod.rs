@@ -83,6 +83,10 @@ impl Workers for Threads {
     }
 
     fn run(&self, job: &(dyn Fn(usize) + Sync)) {
+        // WebAssembly has no threads here: the work is divided as it would be among them, and done part by part.
+        if cfg!(target_family = "wasm") {
+            return (0..self.0).rev().for_each(job);
+        }
         std::thread::scope(|scope| {
             for worker in (0..self.0).rev() {
                 scope.spawn(move || job(worker));
