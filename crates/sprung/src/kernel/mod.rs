@@ -43,7 +43,6 @@ mod team;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use energy::Screen;
 pub use level::Level;
 pub(crate) use team::Team;
 
