@@ -68,7 +68,7 @@ impl Driver {
     /// As [`new`](Self::new), and [`Code::TooLarge`] for a scene that needs more memory than there is.
     pub fn with(source: Source, options: Options) -> Result<Self> {
         let (simulation, opened) = build(source, 1, &options)?;
-        let run = Run::new(simulation, has_room_for_two(&opened, &options));
+        let mut run = Run::new(simulation, has_room_for_two(&opened, &options));
         Ok(Self {
             playing: Playing::default(),
             undo: Undo::new(&opened.model),
@@ -78,7 +78,7 @@ impl Driver {
             waiting: VecDeque::new(),
             trouble: None,
             fixes: Vec::new(),
-            pictures: Pictures::new(&opened.first),
+            pictures: Pictures::new(&opened.first, &run.simulation),
             limits: Limits::default(),
             size: diagonal(&opened.first.positions),
             params: opened.params.clone(),
@@ -259,8 +259,8 @@ impl Driver {
         self.run = Run::new(simulation, has_room_for_two(&opened, &self.options));
         self.size = diagonal(&opened.first.positions);
         self.undo = Undo::new(&opened.model);
-        self.pictures = Pictures::new(&opened.first);
         self.limits = Limits::default();
+        self.pictures = Pictures::new(&opened.first, &self.run.simulation);
         self.energy = self.run.energy();
         self.opened = opened;
         (self.auto, self.hand, self.job) = (None, None, None);
@@ -289,7 +289,7 @@ impl Driver {
     /// One step. The last of several is the one that is drawn.
     pub(crate) fn step(&mut self, is_last: bool) -> Result<()> {
         if is_last {
-            self.pictures.begin(self.run.simulation.state());
+            self.pictures.begin(&self.run.simulation);
         }
         self.run.step()?;
         self.steps_taken += 1;
@@ -314,13 +314,7 @@ impl Driver {
     fn refresh(&mut self) {
         self.run.refresh_sample();
         self.params = self.run.shared_params().clone();
-        let is_stale = {
-            let (now, state) = (&self.pictures.now, self.run.simulation.state());
-            now.step != state.step || now.positions != state.position || now.velocities != state.velocity
-        };
-        if is_stale {
-            self.pictures.show(self.run.simulation.state(), true);
-        }
+        self.pictures.refresh(&self.run.simulation);
         let is_large = self.opened.model.spring_count() > SMALL;
         if !(is_large && self.playing.on && self.clock - self.energy_at < NOW_AND_THEN) {
             self.energy = self.run.energy();
@@ -331,7 +325,7 @@ impl Driver {
 
     /// Shows the state as it is, with no step that leads to it.
     pub(crate) fn jumped(&mut self) {
-        self.pictures.show(self.run.simulation.state(), false);
+        self.pictures.show(&self.run.simulation, false);
         self.limits.forget();
         self.playing.forget();
     }

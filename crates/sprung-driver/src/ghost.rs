@@ -44,15 +44,12 @@ impl Ghost {
 
     /// How it is now, compared with the other run.
     pub fn compare(&mut self, other: &Snapshot) -> Comparison {
-        let state = self.simulation.state();
-        if self.picture.positions.is_empty() || self.picture.step != state.step {
-            match Arc::get_mut(&mut self.picture) {
-                Some(picture) => picture.fill(state),
-                None => {
-                    let mut picture = Snapshot::default();
-                    picture.fill(state);
-                    self.picture = Arc::new(picture);
-                }
+        if self.picture.positions.is_empty() || self.picture.step != self.simulation.now().0 {
+            if Arc::get_mut(&mut self.picture).is_none() {
+                self.picture = Arc::default();
+            }
+            if let Some(picture) = Arc::get_mut(&mut self.picture) {
+                self.simulation.fill(picture);
             }
         }
         let pairs = self.picture.positions.iter().zip(&other.positions);

@@ -41,7 +41,8 @@ impl Limits {
 
     /// Finds what is due. `clock` is real time, s.
     pub fn refresh(&mut self, simulation: &Simulation, params: &Arc<Params>, playing: bool, clock: f64) {
-        let (model, state) = (simulation.model(), simulation.state());
+        // Not the state: it is copied out only when a limit of it is due.
+        let (model, (step_now, _)) = (simulation.model(), simulation.now());
         let is_small = model.spring_count() <= SMALL;
         if !self.params.as_ref().is_some_and(|old| Arc::ptr_eq(old, params) || limits_are_same(old, params)) {
             self.every_is_stale = true;
@@ -59,12 +60,12 @@ impl Limits {
             self.found.every_configuration =
                 stability::every_configuration(model, params).map(|limit| limit.dt);
         }
-        if is_changed || self.certified_at.is_none_or(|(step, _)| step != state.step) {
-            self.found.certified = stability::certified(model, params, &state.position);
-            self.certified_at = Some((state.step, clock));
+        if is_changed || self.certified_at.is_none_or(|(step, _)| step != step_now) {
+            self.found.certified = stability::certified(model, params, &simulation.state().position);
+            self.certified_at = Some((step_now, clock));
         }
 
-        let is_known = self.found.sharp_step == Some(state.step);
+        let is_known = self.found.sharp_step == Some(step_now);
         let sharp_is_due = !playing || self.sharp_at.is_none_or(|time| clock - time >= SHARP_EVERY);
         if is_small && !is_known && sharp_is_due {
             self.find_sharp(simulation, clock);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sprung::{Snapshot, State};
+use sprung::{Simulation, Snapshot};
 
 /// Spare buffers kept: the front end may hold the last two reports, each with two snapshots.
 const MOST_SPARE: usize = 4;
@@ -14,27 +14,39 @@ pub(crate) struct Pictures {
     pub now: Arc<Snapshot>,
     /// Whether there is a step between the two.
     pub moves: bool,
+    /// [`Simulation::changes`] when `now` was made.
+    changes: u64,
     spare: Vec<Arc<Snapshot>>,
 }
 
 impl Pictures {
-    pub fn new(first: &Arc<Snapshot>) -> Self {
-        Self { before: first.clone(), now: first.clone(), moves: false, spare: Vec::new() }
+    /// Of a simulation that is still at its first state.
+    pub fn new(first: &Arc<Snapshot>, simulation: &Simulation) -> Self {
+        let (before, now, changes) = (first.clone(), first.clone(), simulation.changes());
+        Self { before, now, moves: false, changes, spare: Vec::new() }
     }
 
     /// Keeps the state that the last step of this advance starts from.
-    pub fn begin(&mut self, state: &State) {
+    pub fn begin(&mut self, simulation: &Simulation) {
         let mut before = self.buffer();
-        fill(&mut before, state);
+        fill(&mut before, simulation);
         let old = std::mem::replace(&mut self.before, before);
         self.keep(old);
         self.moves = true;
     }
 
-    /// Shows this state, with or without the step that leads to it.
-    pub fn show(&mut self, state: &State, moves: bool) {
+    /// Shows the state now if it is not shown already, with the step that led to it.
+    pub fn refresh(&mut self, simulation: &Simulation) {
+        if self.changes != simulation.changes() {
+            self.show(simulation, true);
+        }
+    }
+
+    /// Shows the state now, with or without the step that led to it.
+    pub fn show(&mut self, simulation: &Simulation, moves: bool) {
         let mut now = self.buffer();
-        fill(&mut now, state);
+        fill(&mut now, simulation);
+        self.changes = simulation.changes();
         let old = std::mem::replace(&mut self.now, now);
         self.keep(old);
         self.moves = moves && self.before.step + 1 == self.now.step;
@@ -64,38 +76,55 @@ impl Pictures {
     }
 }
 
-fn fill(buffer: &mut Arc<Snapshot>, state: &State) {
+fn fill(buffer: &mut Arc<Snapshot>, simulation: &Simulation) {
     if let Some(snapshot) = Arc::get_mut(buffer) {
-        snapshot.fill(state);
+        simulation.fill(snapshot);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::Vec3;
+    use sprung::scene::Scene;
+    use sprung::{Change, Vec3};
+
+    fn falling() -> (Simulation, Pictures) {
+        let scene = Scene::builtin("chain").expect("a built-in scene");
+        let mut simulation = scene.simulation().expect("it can be built");
+        let first = Arc::new(simulation.snapshot().clone());
+        let pictures = Pictures::new(&first, &simulation);
+        (simulation, pictures)
+    }
 
     #[test]
     fn a_picture_that_is_held_is_not_written_to_and_others_are_used_again() {
-        let mut state = State::new(vec![Vec3::ZERO], vec![Vec3::ZERO]);
-        let mut first = Snapshot::default();
-        first.fill(&state);
-        let mut pictures = Pictures::new(&Arc::new(first));
-        let held = pictures.now.clone();
+        let (mut simulation, mut pictures) = falling();
+        let (held, first) = (pictures.now.clone(), simulation.snapshot().clone());
         let mut seen = Vec::new();
         for step in 1..20 {
-            pictures.begin(&state);
-            state.step = step;
-            state.position[0] = Vec3::splat(step as f32);
-            pictures.show(&state, true);
+            pictures.begin(&simulation);
+            simulation.steps(1).expect("it is stable");
+            pictures.refresh(&simulation);
             assert!(pictures.moves);
             assert_eq!((pictures.before.step, pictures.now.step), (step - 1, step));
-            assert_eq!(pictures.now.positions[0].x, step as f32);
+            assert_eq!(*pictures.now, *simulation.snapshot());
             seen.push(Arc::as_ptr(&pictures.now));
         }
-        assert_eq!((held.step, held.positions[0]), (0, Vec3::ZERO));
+        assert_eq!(*held, first);
         seen.sort();
         seen.dedup();
         assert!(seen.len() <= 4, "{} buffers", seen.len());
+    }
+
+    #[test]
+    fn a_picture_is_made_anew_only_when_something_has_moved() {
+        let (mut simulation, mut pictures) = falling();
+        let first = Arc::as_ptr(&pictures.now);
+        pictures.refresh(&simulation);
+        assert_eq!(Arc::as_ptr(&pictures.now), first);
+        let there = Vec3::new(1.0, 2.0, 3.0);
+        simulation.change(Change::Place(1, there)).expect("allowed");
+        pictures.refresh(&simulation);
+        assert_eq!((pictures.now.positions[1], pictures.now.step), (there, 0));
     }
 }

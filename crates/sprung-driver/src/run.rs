@@ -238,19 +238,15 @@ impl Run {
     }
 
     fn sample(&mut self) {
-        if self.samples.wants(self.step_now()) {
-            let state = self.simulation.state();
+        let (step, time) = self.simulation.now();
+        if self.samples.wants(step) {
+            let energy = self.energy();
             let values = self.watched.iter().filter_map(|&probe| Some((probe, self.value(probe)?)));
-            self.samples.push(Sample {
-                step: state.step,
-                time: state.time,
-                energy: self.energy(),
-                values: values.collect(),
-            });
+            self.samples.push(Sample { step, time, energy, values: values.collect() });
         }
     }
 
-    pub fn energy(&self) -> Energy {
+    pub fn energy(&mut self) -> Energy {
         self.simulation.energy()
     }
 

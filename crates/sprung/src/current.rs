@@ -4,10 +4,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
-use crate::kernel::Screen;
+use crate::energy::Energy;
 use crate::params::Params;
 use crate::solver::SymplecticEuler;
-use crate::state::State;
+use crate::state::{Snapshot, State};
 use crate::workers::Workers;
 
 /// A solver and the state it is at. Positions and velocities are copied out of the solver's layout only when they are
@@ -23,20 +23,23 @@ pub(crate) struct Current {
     is_loaded: bool,
     /// Step, time and sums of the state that was kept; its positions and velocities are with the solver.
     kept: State,
+    /// How often positions or velocities may have changed.
+    changes: u64,
 }
 
 impl Clone for Current {
     fn clone(&self) -> Self {
-        let (solver, state) = (self.solver.clone(), OnceLock::from(self.state().clone()));
-        Self { solver, state, behind: Mutex::default(), is_loaded: self.is_loaded, kept: self.kept.clone() }
+        let Self { is_loaded, changes, .. } = *self;
+        let (solver, state) = (self.solver.clone(), OnceLock::from(self.copied()));
+        Self { solver, state, behind: Mutex::default(), is_loaded, kept: self.kept.clone(), changes }
     }
 }
 
 impl Current {
     pub fn new(solver: SymplecticEuler, state: State) -> Self {
         let kept = state.counters();
-        let mut current =
-            Self { solver, state: OnceLock::from(state), behind: Mutex::default(), is_loaded: false, kept };
+        let (state, behind) = (OnceLock::from(state), Mutex::default());
+        let mut current = Self { solver, state, behind, is_loaded: false, kept, changes: 0 };
         current.keep();
         current
     }
@@ -54,11 +57,15 @@ impl Current {
         state
     }
 
-    /// The energies now, cheaply, and how far they may be off: for parameters that the solver has packed.
-    pub fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
-        let mut screen = self.solver().screen(params, workers);
-        screen.energy.sums = self.counters().ledger;
-        screen
+    /// Where the energy is now and where it went: for parameters that the solver has packed.
+    pub fn energy(&mut self, params: &Params, workers: &dyn Workers) -> Energy {
+        let sums = self.counters().ledger;
+        Energy { sums, ..self.solver().energy(params, workers) }
+    }
+
+    /// The kinetic energy now, J: that of [`energy`](Self::energy).
+    pub fn kinetic_energy(&mut self, workers: &dyn Workers) -> f64 {
+        self.solver().kinetic_energy(workers)
     }
 
     /// The state.
@@ -75,6 +82,7 @@ impl Current {
     pub fn state_mut(&mut self) -> &mut State {
         self.state();
         self.is_loaded = false;
+        self.changes += 1;
         self.state.get_mut().expect("it was just made")
     }
 
@@ -88,6 +96,37 @@ impl Current {
                 behind.as_mut().expect("a state is either here or there")
             }
         }
+    }
+
+    /// A copy of the state.
+    pub fn copied(&self) -> State {
+        if let Some(state) = self.state.get() {
+            return state.clone();
+        }
+        let behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(counters) = &*behind else {
+            drop(behind);
+            return self.state().clone();
+        };
+        let mut state = State::at_origin(counters, self.solver.point_count());
+        self.solver.store(&mut state);
+        state
+    }
+
+    /// Copies step, time, positions and velocities into a snapshot.
+    pub fn fill(&self, snapshot: &mut Snapshot) {
+        match self.state.get() {
+            Some(state) => snapshot.fill(state),
+            None => {
+                (snapshot.step, snapshot.time) = self.now();
+                self.solver.fill(snapshot);
+            }
+        }
+    }
+
+    /// How often positions or velocities may have changed.
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// The step it is at, and its time, s.
@@ -117,14 +156,25 @@ impl Current {
 
     /// Takes up to so many steps, and stops after one that leaves a position that is not finite. Returns whether all are.
     pub fn advance(&mut self, params: &Params, steps: u64, workers: &dyn Workers) -> bool {
+        let (taken, finite) = self.ahead().advance(params, steps, workers);
+        let state = self.counters();
+        (0..taken).for_each(|_| state.tick(params.dt));
+        finite
+    }
+
+    /// Stops every point where it is.
+    pub fn stop(&mut self) {
+        self.ahead().stop();
+    }
+
+    /// The solver, at this state, to change it there.
+    fn ahead(&mut self) -> &mut SymplecticEuler {
         self.load();
         if let Some(state) = self.state.take() {
             *self.behind.get_mut().unwrap_or_else(PoisonError::into_inner) = Some(state);
         }
-        let (taken, finite) = self.solver.advance(params, steps, workers);
-        let state = self.counters();
-        (0..taken).for_each(|_| state.tick(params.dt));
-        finite
+        self.changes += 1;
+        &mut self.solver
     }
 
     /// The solver, at this state.

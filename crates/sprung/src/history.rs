@@ -164,13 +164,13 @@ impl History {
     }
 
     /// A step was taken.
-    pub fn arrived(&mut self, state: &State, params: &Arc<Params>) {
+    pub fn arrived(&mut self, state: State, params: &Arc<Params>) {
         self.newest = state.step;
         if !(state.step - self.first.state.step).is_multiple_of(GAP) {
             return;
         }
         let last = self.checkpoints.last().unwrap_or(&self.first);
-        let needed = size(state, params, &last.params);
+        let needed = size(&state, params, &last.params);
         if needed > self.room() {
             return;
         }
@@ -179,7 +179,7 @@ impl History {
                 return;
             }
         }
-        self.checkpoints.push(Arc::new(Checkpoint { state: state.clone(), params: params.clone() }));
+        self.checkpoints.push(Arc::new(Checkpoint { state, params: params.clone() }));
         self.count_checkpoints();
     }
 

@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use crate::current::Current;
 use crate::energy::{Energy, LedgerSums};
-use crate::kernel::Screen;
 use crate::model::Model;
 use crate::params::{DT_RANGE, Params};
 use crate::stability::{self, Setter};
@@ -17,7 +16,7 @@ use crate::text::{round_down, significant};
 use crate::workers::Workers;
 
 /// Steps in a row that energy must come from nowhere before a run counts as blown up. Also how often, in steps, a calm run
-/// is looked at: even a screen of the energies costs a good part of a step.
+/// is looked at: its energies cost about as much as a step.
 const PATIENCE: u64 = 20;
 
 /// The part of a limit on dt that is safe to take, 5 % below it. The limit itself is safe in real numbers; the margin is for
@@ -243,9 +242,7 @@ impl Watch {
         if counters.ledger.suspect_steps == 0 && !counters.step.is_multiple_of(PATIENCE) {
             return None;
         }
-        let is_clear = passes(&current.screen(params, workers));
-        let excess = if is_clear { None } else { excess(model, params, current.state()) };
-        let Some(excess) = excess else {
+        let Some(excess) = excess(&current.energy(params, workers)) else {
             current.counters().ledger.suspect_steps = 0;
             self.restart(current, params, 0);
             return None;
@@ -269,26 +266,12 @@ pub(crate) fn steps_to_look(step: u64, suspect: bool) -> u64 {
 }
 
 /// Energy from nowhere, J, where it is more than half of kinetic + elastic.
-pub(crate) fn excess(model: &Model, params: &Params, state: &State) -> Option<f64> {
-    let [excess, allowed] = excess_and_allowed(&Energy::of(model, params, state));
-    (excess > allowed || excess.is_nan()).then_some(excess)
-}
-
-/// Whether it is certain from a screen that [`excess`] finds none. Where it is not, the exact energies decide, so that no
-/// decision depends on the screen.
-fn passes(screen: &Screen) -> bool {
-    let [excess, allowed] = excess_and_allowed(&screen.energy);
-    let LedgerSums { start, work_in, .. } = screen.energy.sums;
-    // The sums of a few numbers below are rounded too; those of the energies are within the bound.
-    let rounding = 16.0 * f64::EPSILON * (start.abs() + work_in.abs());
-    excess + screen.bound + rounding < allowed
-}
-
-/// Energy from nowhere, J, and how much of it is no reason to worry.
-fn excess_and_allowed(energy: &Energy) -> [f64; 2] {
+pub(crate) fn excess(energy: &Energy) -> Option<f64> {
     let LedgerSums { start, work_in, .. } = energy.sums;
     let rounding = ROUNDING * (start.abs() + work_in.abs());
-    [energy.total() - start - work_in, 0.5 * (energy.kinetic + energy.elastic) + rounding]
+    let excess = energy.total() - start - work_in;
+    let allowed = 0.5 * (energy.kinetic + energy.elastic) + rounding;
+    (excess > allowed || excess.is_nan()).then_some(excess)
 }
 
 #[cfg(test)]

@@ -169,7 +169,7 @@ fn nothing_is_unaccounted_for_when_things_change() {
 }
 
 /// A hand that tears a corner of the jelly about, faster than anything in it moves and back and forth at each frame.
-fn violent_drag(run: &mut Simulation, mut after_each: impl FnMut(&Simulation, &State)) {
+fn violent_drag(run: &mut Simulation, mut after_each: impl FnMut(&mut Simulation, &State)) {
     let corner = 999;
     for (frame, speed) in [40.0, 400.0, -900.0, 1500.0, -1500.0, 1500.0, -1000.0, 0.0].into_iter().enumerate()
     {

@@ -51,7 +51,8 @@ struct EnergyParts {
 /// Prints the description.
 pub fn run(args: &ShowArgs) -> Result<()> {
     let (name, scene) = source::scene(&args.scene)?;
-    let simulation = source::simulation(&scene, Some(1))?;
+    let mut simulation = source::simulation(&scene, Some(1))?;
+    let energy = simulation.energy();
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
     // Of a large scene each takes about a second; so both at once.
     let (sharp, certified) = std::thread::scope(|scope| {
@@ -60,7 +61,6 @@ pub fn run(args: &ShowArgs) -> Result<()> {
     });
     let certified = certified.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let every = stability::every_configuration(model, params);
-    let energy = simulation.energy();
     if args.json {
         let answer = Answer {
             scene: name,

@@ -1,104 +1,57 @@
-//! The energies of a state in the layout of the step: one pass that costs less than a step, and how far it may be off.
+//! The energies of a state in the layout of the step, in float64: one pass that costs about as much as a step.
 //!
-//! The pass takes each spring's length in float32, from positions without what rounding dropped of them, and all else in
-//! float64. So it is a *screen*: where its [`bound`](Screen::bound) leaves no doubt, nobody needs the exact
-//! [`Energy::of`](crate::Energy::of), which takes every spring in float64 and in the user's order.
+//! It takes positions and velocities with what rounding dropped of them, as [`Energy::of`](crate::Energy::of) does, which
+//! goes through springs and points one after another in the user's order. The two differ by the order of their sums and by
+//! how a root is found.
 //!
-//! *The bound.* Let u = 2⁻²⁴, the most by which rounding to float32 is off in proportion.
+//! *The root.* Float64 roots and divisions are several times as slow as those of float32. So the length ℓ = √q of a spring is
+//! the float32 root s of q, corrected once by Newton's method, with the division in float32 too:
 //!
-//! - The mass is found as 1/(1/m), with both divisions rounded: it is off by 2u. So is kinetic energy; that of height is off
-//!   by 2u·Σ m|g·x|. Depths below planes have the very bits of `Energy::of`.
-//! - The root of elastic energy is a norm of the stretches d = ℓ − L: √E = ‖d‖, where ‖a‖² = Σ ½k a². Hence with d̂ the computed
-//!   ones, √Ê and √E differ by no more than ‖d̂ − d‖. A component of the axis is rounded once (u), squared (u more) and added up
-//!   (2u more): that makes 5u of ℓ², 2.5u of ℓ, and 3.5u with the root's own rounding. The difference ℓ − L adds u|d|, the
-//!   residues that are left out 2λ, with λ the longest of any point. As |ℓ| ≤ |d| + L,
+//! ```text
+//! ℓ ≈ s + (q − s²)·h    h = ½/s
+//! ```
 //!
-//!   ```text
-//!   ‖d̂ − d‖ ≤ r = 4.5u(‖d‖ + ‖L‖) + 2λ‖1‖        |Ê − E| ≤ 2√E·r + r²
-//!   ```
+//! With u = 2⁻²⁴, the most by which rounding to float32 is off in proportion: q is off by u, its root by u/2, and that is
+//! rounded, so s = ℓ(1 + δ) with |δ| ≤ 1.5u. The square of s is exact in float64. Newton's method leaves ½δ²ℓ, and h, off by
+//! u, leaves δuℓ: together 2.7u² ≈ 10⁻¹⁴ of ℓ. Elastic energy is the square of a norm of the stretches ℓ − L, so
 //!
-//!   and the products k·d·d are off by another 2u of E. Below float32's range a square may hide a length of 10⁻²² m, which is
-//!   added to λ, and a product 10⁻⁴⁵ J.
-//! - A sum of n numbers in float64, in whatever order, is off by n·2⁻⁵³ of the sum of their sizes.
+//! ```text
+//! |√Ê − √E| ≤ 10⁻¹⁴·(√E + √(Σ ½k_s L²))
+//! ```
 //!
-//! The sum of these is doubled, which is ample for all terms of second order in u.
+//! Where q is too small or too large for a float32, s is made zero or is infinite, and the sum is no finite number. A block
+//! with such a sum is taken once more, with float64 roots.
+//!
+//! *The order of sums* is that of the layout: springs and points of a block by lane, lanes by halves, blocks from the first
+//! to the last, and then loose springs. Threads do not enter into it.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
+use super::aligned::Arrays;
 use super::laws::Laws;
 use super::level::Work;
-use super::packed::{gather, window};
-use super::plan::{Bundle, Plan};
+use super::plan::{Bundle, Plan, WINDOW};
 use super::region::Region;
 use super::spring::LawLanes;
-use super::stripe::{SETS, block};
-use super::{BLOCK, LANES, Lanes, six};
+use super::stripe::SETS;
+use super::{BLOCK, LANES, Lanes, six, stripe};
 use crate::contact::Plane;
 use crate::energy::Energy;
-use crate::math;
+use crate::math::COINCIDENT_SQUARED;
 
-/// The most by which rounding to float32 is off, in proportion.
-const U: f64 = 0.5 * f32::EPSILON as f64;
+/// Blocks, at the least, before the positions that their springs reach are moved to the front of their arrays.
+const LEAST_SLIDE: usize = 32;
 
-/// A length that a square below float32's range may hide, m.
-const HIDDEN_LENGTH: f64 = 1e-22;
+/// A float64 for each of the springs that go through together, or of so many points.
+type Wide = [f64; LANES];
 
-/// What all springs together may hide below float32's range, J.
-const HIDDEN_ENERGY: f64 = 1e-35;
-
-/// Partial sums that are kept apart, so that vectors can be added.
-const WAYS: usize = 16;
-
-/// Partial sums.
-type Partial = [f64; WAYS];
-
-/// The energies of a state, and how far they may be off.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Screen {
-    /// The energies, without the ledger's sums.
-    pub energy: Energy,
-    /// The most by which they are off, all errors together, J. Infinite or NaN where an energy is.
-    pub bound: f64,
-}
-
-/// What some points and the springs that begin there add to the energies.
+/// What some points and the springs that begin there have of each energy, J.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
-    kinetic: f64,
+    pub kinetic: f64,
     gravitational: f64,
     elastic: f64,
     contact: f64,
-    /// Σ m|g·x|, J.
-    height: f64,
-    /// The largest component of what rounding dropped of a position, m.
-    residue: f32,
-}
-
-/// Sums over springs that do not depend on the state, for the bound.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Norms {
-    /// Σ ½k, N/m.
-    pub ones: f64,
-    /// Σ ½k L², J.
-    pub rest_lengths: f64,
-}
-
-impl Screen {
-    /// From the sums over all blocks.
-    pub(super) fn new(sums: Sums, norms: Norms, plan: &Plan) -> Self {
-        let Sums { kinetic, gravitational, elastic, contact, height, .. } = sums;
-        let residue = 3f64.sqrt() * f64::from(sums.residue) + HIDDEN_LENGTH;
-        let root = elastic.sqrt();
-        let root_off = 4.5 * U * (root + norms.rest_lengths.sqrt()) + 2.0 * residue * norms.ones.sqrt();
-        let elastic_off = (2.0 * root + root_off) * root_off + HIDDEN_ENERGY;
-        let numbers = (plan.points + plan.springs) as f64;
-        let rounding = 2.0 * U + numbers * f64::EPSILON;
-        let size = kinetic + height + elastic + contact;
-        Self {
-            energy: Energy { kinetic, gravitational, elastic, contact, ..Energy::default() },
-            bound: 2.0 * (elastic_off + rounding * size),
-        }
-    }
 }
 
 impl Sums {
@@ -108,14 +61,59 @@ impl Sums {
         self.gravitational += block.gravitational;
         self.elastic += block.elastic;
         self.contact += block.contact;
-        self.height += block.height;
-        self.residue = self.residue.max(block.residue);
     }
 
     /// Adds one spring of this law (k_s, k_d, L) between two positions.
-    pub fn add_spring(&mut self, [stiffness, _, rest_length]: [f32; 3], [near, far]: [Vec3; 2]) {
-        let stretch = math::distance(near, far) - rest_length;
-        self.elastic += 0.5 * f64::from(stiffness * stretch * stretch);
+    pub fn add_spring(&mut self, [stiffness, _, rest_length]: [f32; 3], [near, far]: [DVec3; 2]) {
+        let stretch = near.distance(far) - f64::from(rest_length);
+        self.elastic += 0.5 * f64::from(stiffness) * stretch * stretch;
+    }
+
+    /// The energies, without the ledger's sums.
+    pub fn energy(self) -> Energy {
+        let Self { kinetic, gravitational, elastic, contact } = self;
+        Energy { kinetic, gravitational, elastic, contact, ..Energy::default() }
+    }
+}
+
+/// Float64 positions of a block and of the points where its springs end, made as the pass goes on: little enough to stay
+/// in the cache.
+#[derive(Clone, Debug)]
+pub(super) struct WidePositions {
+    arrays: Arrays<3, f64>,
+    /// Blocks in a slide.
+    slide: usize,
+    /// How far beyond a block its springs reach.
+    reach: usize,
+}
+
+impl WidePositions {
+    /// For a region of so many blocks.
+    pub fn new(plan: &Plan, blocks: usize) -> Self {
+        let reach = plan.reach().next_multiple_of(LANES);
+        let slide = blocks.clamp(1, LEAST_SLIDE.max(2 * reach / BLOCK));
+        let window = if plan.bundles.is_empty() { 0 } else { WINDOW };
+        Self { arrays: Arrays::with_windows(slide * BLOCK + reach, window), slide, reach }
+    }
+
+    /// Before the block that is looked at as number `count`, whose points begin these arrays: where they are among the
+    /// float64 positions. Makes those that this block is the first to need.
+    #[inline(always)]
+    fn begin_block(&mut self, count: usize, high: [&[f32]; 6], low: [&[f32]; 6]) -> usize {
+        let Self { slide, reach, .. } = *self;
+        let first = count % slide * BLOCK;
+        let begun = slide * BLOCK..slide * BLOCK + reach;
+        let new = if count == 0 { 0..reach + BLOCK } else { reach..reach + BLOCK };
+        for ((wide, high), low) in self.arrays.all_mut().into_iter().zip(high).zip(low) {
+            if count > 0 && first == 0 {
+                wide.copy_within(begun.clone(), 0);
+            }
+            let wide = &mut wide[first + new.start..first + new.end];
+            for ((wide, &high), &low) in wide.iter_mut().zip(&high[new.clone()]).zip(&low[new.clone()]) {
+                *wide = f64::from(high) + f64::from(low);
+            }
+        }
+        first
     }
 }
 
@@ -133,111 +131,114 @@ impl Work for Survey<'_> {
 
     #[inline(always)]
     fn run(self) {
-        for index in 0..self.region.blocks.len() {
-            let block = self.region.blocks.start + index;
-            self.region.energies[index] = Sums { elastic: 0.5 * self.springs(block), ..self.points(block) };
+        for (count, block) in self.region.blocks.clone().enumerate() {
+            let first = self.region.index(block * BLOCK);
+            let Region { points, low, wide, .. } = &mut *self.region;
+            let [points, low] = [points, low].map(|arrays| six(arrays.all(), |array| &array[first..]));
+            let at = wide.begin_block(count, points, low);
+            let quick = self.springs::<false>(block, at);
+            let elastic = if quick.is_finite() { quick } else { self.springs::<true>(block, at) };
+            let [gravitational, contact] = self.points(block, at);
+            let kinetic = kinetic(self.region, block);
+            self.region.energies[count] = Sums { kinetic, gravitational, elastic, contact };
         }
     }
 }
 
 impl Survey<'_> {
-    /// Σ k(ℓ − L)² over the springs that begin in a block, J.
+    /// Σ ½k(ℓ − L)² over the springs that begin in a block, whose float64 positions begin at `at`, J.
     #[inline(always)]
-    fn springs(&self, index: usize) -> f64 {
+    fn springs<const EXACT_ROOTS: bool>(&self, index: usize, at: usize) -> f64 {
         let Self { region, plan, laws, .. } = self;
-        let first = region.index(index * BLOCK);
-        let [x, y, z, ..] = six(region.points.all(), |array| &array[first..]);
-        let points = [x, y, z];
-        let near = points.map(block);
-        let mut sum = [0.0; WAYS];
+        let points = region.wide.arrays.all().map(|array| &array[at..]);
+        let near = points.map(wide_block);
+        let mut sum = [0.0; LANES];
         for stripe in plan.blocks[index].stripes.clone() {
-            let far = points.map(|array| block(&array[plan.stripes[stripe].offset..]));
+            let far = points.map(|array| wide_block(&array[plan.stripes[stripe].offset..]));
             let (law, mask) = (&laws.stripes[stripe], &laws.masks[stripe]);
             for set in (0..SETS).filter(|&set| mask[set] != 0) {
-                let squared = squared_lengths(near.map(|near| &near[set]), far.map(|far| &far[set]));
-                add_stretch(&mut sum, &squared, laws.values.lanes(law, set), mask[set]);
+                let squares = squares(near.map(|near| &near[set]), far.map(|far| &far[set]));
+                let lengths = lengths::<EXACT_ROOTS>(&squares);
+                add_stretch(&mut sum, &lengths, laws.values.lanes(law, set), mask[set]);
             }
         }
         for bundle in plan.blocks[index].bundles.clone() {
             let Bundle { points: begins, rows } = &plan.bundles[bundle];
-            let [x, y, z, ..] = region.points.onwards(first);
-            let windows = [x, y, z].map(window);
+            let windows = region.wide.arrays.onwards(at).map(wide_window);
             let near = windows.map(|array| gather(array, begins));
             for (set, row) in rows.clone().enumerate() {
                 let far = windows.map(|array| gather(array, &plan.rows[row]));
-                let squared = squared_lengths(near.each_ref(), far.each_ref());
-                add_stretch(
-                    &mut sum,
-                    &squared,
-                    laws.values.lanes(&laws.bundles[bundle], set),
-                    laws.rows[row],
-                );
+                let lengths = lengths::<EXACT_ROOTS>(&squares(near.each_ref(), far.each_ref()));
+                let law = laws.values.lanes(&laws.bundles[bundle], set);
+                add_stretch(&mut sum, &lengths, law, laws.rows[row]);
             }
         }
-        total(sum)
+        0.5 * total(sum)
     }
 
-    /// The energies of a block's points by themselves.
+    /// −Σ m g·x and Σ ½k_c p² over a block's points that forces can move, J.
     #[inline(always)]
-    fn points(&self, index: usize) -> Sums {
-        let Self { region, plan, gravity, planes, .. } = self;
-        let first = region.index(index * BLOCK);
-        let high = six(region.points.all(), |array| block(&array[first..]));
-        let low = six(region.low.all(), |array| block(&array[first..]));
-        let [inverse_mass] = region.inverse_mass.all().map(|array| block(&array[first..]));
+    fn points(&self, index: usize, at: usize) -> [f64; 2] {
+        let Self { region, gravity, planes, .. } = self;
+        let [x, y, z] = region.wide.arrays.all().map(|array| wide_block(&array[at..]));
+        let mass = masses(region, index);
         let [gx, gy, gz] = gravity.as_dvec3().to_array();
-        let mut residues = [0.0f32; LANES];
-        let [mut kinetic, mut lift, mut height, mut contact] = [[0.0; WAYS]; 4];
-        let len = BLOCK.min(plan.points - index * BLOCK);
-        for set in 0..len.div_ceil(LANES).min(SETS) {
-            // What no force can move has no energy of its own: a mass of zero.
-            let mut mass = [0.0; LANES];
+        let [mut lift, mut contact] = [[0.0; LANES]; 2];
+        for set in 0..SETS {
             for lane in 0..LANES {
-                let inverse = inverse_mass[set][lane];
-                mass[lane] = if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
-            }
-            let [mut x, mut y, mut z] = [[0.0; LANES]; 3];
-            let [mut moving, mut lifted, mut high_up, mut pressed] = [[0.0; LANES]; 4];
-            for lane in 0..LANES {
-                let mass = f64::from(mass[lane]);
-                let u = f64::from(high[3][set][lane]) + f64::from(low[3][set][lane]);
-                let v = f64::from(high[4][set][lane]) + f64::from(low[4][set][lane]);
-                let w = f64::from(high[5][set][lane]) + f64::from(low[5][set][lane]);
-                moving[lane] = mass * (u * u + v * v + w * w);
-                x[lane] = f64::from(high[0][set][lane]) + f64::from(low[0][set][lane]);
-                y[lane] = f64::from(high[1][set][lane]) + f64::from(low[1][set][lane]);
-                z[lane] = f64::from(high[2][set][lane]) + f64::from(low[2][set][lane]);
-                lifted[lane] = mass * (gx * x[lane] + gy * y[lane] + gz * z[lane]);
-                high_up[lane] = lifted[lane].abs();
+                let height = gx * x[set][lane] + gy * y[set][lane] + gz * z[set][lane];
+                lift[lane] += f64::from(mass[set][lane]) * height;
             }
             for plane in planes.iter() {
-                press(plane, [&x, &y, &z], &mass, &mut pressed);
+                press(plane, [&x[set], &y[set], &z[set]], &mass[set], &mut contact);
             }
-            for low in &low[..3] {
-                for lane in 0..LANES {
-                    let size = low[set][lane].abs();
-                    residues[lane] = if size > residues[lane] { size } else { residues[lane] };
-                }
-            }
-            add(&mut kinetic, &moving);
-            add(&mut lift, &lifted);
-            add(&mut height, &high_up);
-            add(&mut contact, &pressed);
         }
-        Sums {
-            kinetic: 0.5 * total(kinetic),
-            gravitational: -total(lift),
-            elastic: 0.0,
-            contact: total(contact),
-            height: total(height),
-            residue: largest(residues),
+        [-total(lift), total(contact)]
+    }
+}
+
+/// One pass through a region's blocks for their kinetic energies alone, which it leaves in the region.
+pub(super) struct KineticSurvey<'a>(pub &'a mut Region);
+
+impl Work for KineticSurvey<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (count, block) in self.0.blocks.clone().enumerate() {
+            self.0.energies[count].kinetic = kinetic(self.0, block);
         }
     }
 }
 
+/// Σ ½mv² over a block's points that forces can move, J.
+#[inline(always)]
+fn kinetic(region: &Region, index: usize) -> f64 {
+    let first = region.index(index * BLOCK);
+    let high = six(region.points.all(), |array| stripe::block(&array[first..]));
+    let low = six(region.low.all(), |array| stripe::block(&array[first..]));
+    let mass = masses(region, index);
+    let mut sum = [0.0; LANES];
+    for set in 0..SETS {
+        for lane in 0..LANES {
+            let speed = |part: usize| f64::from(high[part][set][lane]) + f64::from(low[part][set][lane]);
+            let (u, v, w) = (speed(3), speed(4), speed(5));
+            sum[lane] += f64::from(mass[set][lane]) * (u * u + v * v + w * w);
+        }
+    }
+    0.5 * total(sum)
+}
+
+/// The masses of a block's points, kg: zero where no force can move a point, or where there is none.
+#[inline(always)]
+fn masses(region: &Region, index: usize) -> &stripe::Block {
+    let [mass] = region.mass.all();
+    stripe::block(&mass[region.index(index * BLOCK)..])
+}
+
 /// Adds ½k_c p² of the points that are below a plane and can move.
 #[inline(always)]
-fn press(plane: &Plane, [x, y, z]: [&[f64; LANES]; 3], mass: &Lanes, energy: &mut [f64; LANES]) {
+fn press(plane: &Plane, [x, y, z]: [&Wide; 3], mass: &Lanes, energy: &mut Wide) {
     let (point, normal) = (plane.point.as_dvec3(), plane.normal.as_dvec3());
     let stiffness = 0.5 * f64::from(plane.stiffness);
     for lane in 0..LANES {
@@ -251,57 +252,67 @@ fn press(plane: &Plane, [x, y, z]: [&[f64; LANES]; 3], mass: &Lanes, energy: &mu
 }
 
 #[inline(always)]
-fn squared_lengths(near: [&Lanes; 3], far: [&Lanes; 3]) -> Lanes {
-    let mut squared = [0.0; LANES];
+fn squares(near: [&Wide; 3], far: [&Wide; 3]) -> Wide {
+    let mut squares = [0.0; LANES];
     for lane in 0..LANES {
         let x = near[0][lane] - far[0][lane];
         let y = near[1][lane] - far[1][lane];
         let z = near[2][lane] - far[2][lane];
-        squared[lane] = x * x + y * y + z * z;
+        squares[lane] = x * x + y * y + z * z;
     }
-    squared
+    squares
+}
+
+/// The roots of squares, to 10⁻¹⁴ of them; not finite where a square is beyond float32, unless roots are to be exact.
+#[inline(always)]
+fn lengths<const EXACT_ROOTS: bool>(squares: &Wide) -> Wide {
+    let mut lengths = [0.0; LANES];
+    if EXACT_ROOTS {
+        for lane in 0..LANES {
+            lengths[lane] = squares[lane].sqrt();
+        }
+        return lengths;
+    }
+    let [mut roots, mut halves] = [[0.0; LANES]; 2];
+    for lane in 0..LANES {
+        let square = squares[lane] as f32;
+        // Also keeps denormal numbers out, which have fewer digits.
+        let root = if square > COINCIDENT_SQUARED { square } else { 0.0 }.sqrt();
+        roots[lane] = root;
+        halves[lane] = 0.5 / root;
+    }
+    for lane in 0..LANES {
+        let root = f64::from(roots[lane]);
+        lengths[lane] = root + (squares[lane] - root * root) * f64::from(halves[lane]);
+    }
+    lengths
 }
 
 /// Adds k(ℓ − L)² of the lanes whose bit of `mask` is set.
 #[inline(always)]
-fn add_stretch(sum: &mut Partial, squared: &Lanes, law: LawLanes<'_>, mask: u32) {
+fn add_stretch(sum: &mut Wide, lengths: &Wide, law: LawLanes<'_>, mask: u32) {
     // One loop for each kind of law: the choice is made out here.
-    let energy = match law {
-        LawLanes::Same([k, _, rest]) => stretch(squared, mask, |_| (k, rest)),
-        LawLanes::Lengths([k, _], rest) => stretch(squared, mask, |lane| (k, rest[lane])),
-        LawLanes::Each([k, _, rest]) => stretch(squared, mask, |lane| (k[lane], rest[lane])),
-    };
-    for energies in energy.as_chunks::<WAYS>().0 {
-        for way in 0..WAYS {
-            sum[way] += f64::from(energies[way]);
-        }
+    match law {
+        LawLanes::Same([k, _, rest]) => add_stretch_by(sum, lengths, mask, |_| (k, rest)),
+        LawLanes::Lengths([k, _], rest) => add_stretch_by(sum, lengths, mask, |lane| (k, rest[lane])),
+        LawLanes::Each([k, _, rest]) => add_stretch_by(sum, lengths, mask, |lane| (k[lane], rest[lane])),
     }
 }
 
 #[inline(always)]
-fn stretch(squared: &Lanes, mask: u32, law: impl Fn(usize) -> (f32, f32)) -> Lanes {
-    let mut energy = [0.0; LANES];
+fn add_stretch_by(sum: &mut Wide, lengths: &Wide, mask: u32, law: impl Fn(usize) -> (f32, f32)) {
     for lane in 0..LANES {
         let (stiffness, rest_length) = law(lane);
-        let stretch = squared[lane].sqrt() - rest_length;
-        energy[lane] = if (mask >> lane) & 1 != 0 { stiffness * stretch * stretch } else { 0.0 };
-    }
-    energy
-}
-
-#[inline(always)]
-fn add(sum: &mut Partial, values: &[f64; LANES]) {
-    for values in values.as_chunks::<WAYS>().0 {
-        for way in 0..WAYS {
-            sum[way] += values[way];
-        }
+        let stretch = lengths[lane] - f64::from(rest_length);
+        let energy = f64::from(stiffness) * stretch * stretch;
+        sum[lane] += if (mask >> lane) & 1 != 0 { energy } else { 0.0 };
     }
 }
 
-/// The sum of partial sums, by halves.
+/// The sum of all lanes, by halves.
 #[inline(always)]
-fn total(mut sum: Partial) -> f64 {
-    let mut half = WAYS / 2;
+fn total(mut sum: Wide) -> f64 {
+    let mut half = LANES / 2;
     while half > 0 {
         for way in 0..half {
             sum[way] += sum[way + half];
@@ -311,16 +322,56 @@ fn total(mut sum: Partial) -> f64 {
     sum[0]
 }
 
-/// The largest of all lanes, by halves.
+/// What lies at the points of a block, given what lies from the first of them on.
 #[inline(always)]
-fn largest(mut values: Lanes) -> f32 {
-    let mut half = LANES / 2;
-    while half > 0 {
-        for lane in 0..half {
-            let other = values[lane + half];
-            values[lane] = if other > values[lane] { other } else { values[lane] };
-        }
-        half /= 2;
+fn wide_block(values: &[f64]) -> &[Wide; SETS] {
+    values.as_chunks().0.first_chunk().expect("arrays end with a block to spare")
+}
+
+/// What a 16-bit number can be an index into: nothing is left to be checked for each lane.
+#[inline(always)]
+fn wide_window(values: &[f64]) -> &[f64; WINDOW] {
+    values.first_chunk().expect("arrays end with a window to spare")
+}
+
+#[inline(always)]
+fn gather(values: &[f64; WINDOW], at: &[u16; LANES]) -> Wide {
+    let mut gathered = [0.0; LANES];
+    for lane in 0..LANES {
+        gathered[lane] = values[at[lane] as usize];
     }
-    values[0]
+    gathered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares of all sizes, those next to powers of two among them, where rounding is worst.
+    #[test]
+    fn a_length_is_off_by_no_more_than_stated() {
+        let u = 2f64.powi(-24);
+        let bound = 2.625 * u * u + 2.0 * f64::EPSILON;
+        let mut worst = 0f64;
+        for exponent in -99..127 {
+            for start in [1.0, 1.3, 1.999] {
+                let squares = std::array::from_fn(|lane| {
+                    2f64.powi(exponent) * (start + 1e-7 * 0.618_033_988_749_895 * lane as f64)
+                });
+                let (quick, exact) = (lengths::<false>(&squares), lengths::<true>(&squares));
+                for (quick, exact) in quick.into_iter().zip(exact) {
+                    worst = worst.max((quick - exact).abs() / exact);
+                }
+            }
+        }
+        assert!(worst <= bound, "{worst:e}, over {bound:e}");
+    }
+
+    #[test]
+    fn a_square_beyond_float32_gives_no_finite_length() {
+        for square in [0.0, 1e-300, 1e-45, 1e-31, 1e39, 1e77, f64::INFINITY, f64::NAN] {
+            assert!(!lengths::<false>(&[square; LANES])[0].is_finite(), "{square:e}");
+        }
+        assert_eq!(lengths::<true>(&[1e77; LANES])[0], 1e77f64.sqrt());
+    }
 }

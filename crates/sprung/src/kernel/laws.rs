@@ -1,7 +1,6 @@
 //! Stiffness, damping and rest length of every spring, packed in the order of their use: one number where all springs
 //! that go through together share it.
 
-use super::energy::Norms;
 use super::plan::Plan;
 use super::spring::LawLanes;
 use super::stripe::Mask;
@@ -36,7 +35,6 @@ pub(crate) struct Laws {
     pub rows: Vec<u32>,
     /// k_s, k_d and L of the loose springs; none if it is cut.
     pub loose: Vec<Option<[f32; 3]>>,
-    pub norms: Norms,
 }
 
 impl Laws {
@@ -48,7 +46,7 @@ impl Laws {
 
     /// Packs them anew, into the memory that is there.
     pub fn fill(&mut self, plan: &Plan, model: &Model, params: &Params) {
-        let Self { values, stripes, masks, bundles, rows, loose, norms } = self;
+        let Self { values, stripes, masks, bundles, rows, loose } = self;
         values.0.clear();
         stripes.clear();
         masks.clear();
@@ -95,12 +93,6 @@ impl Laws {
             bundles.push(law);
         }
         loose.extend(plan.loose.iter().map(|loose| Some(loose.spring as usize).filter(is_live).map(law_of)));
-        *norms = Norms::default();
-        for [k, _, rest] in (0..plan.springs).filter(is_live).map(law_of) {
-            let (half, rest) = (0.5 * f64::from(k), f64::from(rest));
-            norms.ones += half;
-            norms.rest_lengths += half * rest * rest;
-        }
     }
 }
 

@@ -45,7 +45,6 @@ mod team;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use energy::Screen;
 pub use level::Level;
 #[cfg(test)]
 pub(crate) use plan::stripes_and_loose;

@@ -7,10 +7,11 @@
 use std::ops::Range;
 
 use super::aligned::Arrays;
-use super::energy::Sums;
+use super::energy::{Sums, WidePositions};
 use super::packed::Force;
 use super::plan::{Plan, WINDOW};
 use super::{BLOCK, GROUP, LANES};
+use crate::params::Params;
 
 /// Blocks that are swept, at the least, before the forces that reach beyond them are moved to the front of their arrays.
 const LEAST_SLIDE: usize = 32;
@@ -28,10 +29,14 @@ pub(crate) struct Region {
     pub low: Arrays<6>,
     /// The same again, for a state that is kept: see [`Team::keep`](super::team::Team::keep).
     pub other: Option<[Arrays<6>; 2]>,
+    /// Of its own points, 1/kg and kg; both zero where no force can move one.
     pub inverse_mass: Arrays<1>,
+    pub mass: Arrays<1>,
     pub forces: Forces,
     /// Of each of its own blocks, while they are added up.
     pub energies: Vec<Sums>,
+    /// While energies are computed.
+    pub wide: WidePositions,
 }
 
 /// Sums of forces while they are needed.
@@ -61,12 +66,31 @@ impl Region {
         Self {
             forces: Forces::new(plan, blocks.end - first_block),
             energies: vec![Sums::default(); blocks.len()],
+            wide: WidePositions::new(plan, blocks.len()),
             blocks,
             first_block,
             points: Arrays::with_windows(len, window),
             low: Arrays::new(len),
             other: None,
             inverse_mass: Arrays::new(len),
+            mass: Arrays::new(len),
+        }
+    }
+
+    /// Sets the mass of what lies at an index of its arrays.
+    pub fn set_mass(&mut self, at: usize, params: &Params, point: usize) {
+        let ([inverse_mass], [mass]) = (self.inverse_mass.all_mut(), self.mass.all_mut());
+        inverse_mass[at] = params.inverse_mass(point);
+        mass[at] = if params.is_fixed(point) { 0.0 } else { params.point_mass[point] };
+    }
+
+    /// Copies where points of the region after it are, to the last bit, as far as its own springs reach.
+    pub fn look_ahead(&mut self, plan: &Plan, next: &Self) {
+        let (end, begin) = (self.index(self.blocks.end * BLOCK), next.index(next.blocks.start * BLOCK));
+        for (here, there) in [(&mut self.points, &next.points), (&mut self.low, &next.low)] {
+            for (here, there) in here.all_mut().into_iter().zip(there.all()) {
+                here[end..end + plan.reach()].copy_from_slice(&there[begin..begin + plan.reach()]);
+            }
         }
     }
 
@@ -82,6 +106,15 @@ impl Region {
             std::mem::swap(points, &mut self.points);
             std::mem::swap(low, &mut self.low);
         }
+    }
+
+    /// Goes on with a copy in the other arrays: what is here is kept.
+    pub fn move_away(&mut self) {
+        if let Some([points, low]) = &mut self.other {
+            points.clone_from(&self.points);
+            low.clone_from(&self.low);
+        }
+        self.swap();
     }
 
     /// Where a place of its own or of the blocks before is in its arrays.

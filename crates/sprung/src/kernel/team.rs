@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::{DVec3, Vec3};
 
 use super::aligned::Arrays;
-use super::energy::{Screen, Sums, Survey};
+use super::energy::{KineticSurvey, Sums, Survey};
 use super::integrate::Field;
 use super::laws::Laws;
 use super::level::{Checked, Level};
@@ -19,9 +19,10 @@ use super::plan::Plan;
 use super::region::Region;
 use super::sweep::{Purpose, Push, PushKind, Sweep};
 use super::{BLOCK, GROUP};
+use crate::energy::Energy;
 use crate::model::Model;
 use crate::params::{Grab, Params};
-use crate::state::State;
+use crate::state::{Snapshot, State};
 use crate::workers::Workers;
 
 /// When it is worth while to call on another thread.
@@ -136,10 +137,8 @@ impl Team {
     pub fn set_masses(&mut self, model: &Model, params: &Params) {
         for region in &mut self.regions {
             let region = own(region);
-            let (first, blocks) = (region.first_block, region.blocks.clone());
-            let [inverse_mass] = region.inverse_mass.all_mut();
-            for place in blocks.start * BLOCK..self.plan.points.min(blocks.end * BLOCK) {
-                inverse_mass[place - first * BLOCK] = params.inverse_mass(model.point_at(place));
+            for place in region.blocks.start * BLOCK..self.plan.points.min(region.blocks.end * BLOCK) {
+                region.set_mass(region.index(place), params, model.point_at(place));
             }
         }
     }
@@ -148,9 +147,7 @@ impl Team {
     pub fn set_mass(&mut self, model: &Model, params: &Params, point: usize) {
         let place = model.place_of(point);
         let region = own(self.region_of(place));
-        let at = region.index(place);
-        let [inverse_mass] = region.inverse_mass.all_mut();
-        inverse_mass[at] = params.inverse_mass(point);
+        region.set_mass(region.index(place), params, point);
     }
 
     /// Takes over positions and velocities.
@@ -184,7 +181,19 @@ impl Team {
     pub fn store(&self, model: &Model, state: &mut State) {
         for region in &self.regions {
             let region = lock(region);
-            self.hand_out(model, &region, [&region.points, &region.low], state);
+            self.hand_out_all(model, &region, [&region.points, &region.low], state);
+        }
+    }
+
+    /// Hands out positions and velocities without what rounding dropped, in the user's order.
+    pub fn fill(&self, model: &Model, snapshot: &mut Snapshot) {
+        let Snapshot { positions, velocities, .. } = snapshot;
+        for vectors in [&mut *positions, &mut *velocities] {
+            vectors.resize(self.plan.points, Vec3::ZERO);
+        }
+        for region in &self.regions {
+            let region = lock(region);
+            self.hand_out(model, &region, &region.points, [positions, velocities]);
         }
     }
 
@@ -202,39 +211,72 @@ impl Team {
             let here = [&region.points, &region.low];
             let there = region.other.as_ref().map(|other| other.each_ref());
             if let Some(arrays) = if self.are_kept_here { Some(here) } else { there } {
-                self.hand_out(model, &region, arrays, state);
+                self.hand_out_all(model, &region, arrays, state);
             }
         }
     }
 
-    /// The energies of this state, with a bound on how far they are off; the same bits for any number of threads.
-    pub fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
-        let Self { plan, laws, level, regions, borders, are_behind, loose, .. } = self;
+    /// The energies of this state, without the ledger's sums; the same bits for any number of threads.
+    pub fn energy(&mut self, params: &Params, workers: &dyn Workers) -> Energy {
+        for after in 1..self.regions.len() {
+            let (before, rest) = self.regions.split_at_mut(after);
+            if let (Some(region), Some(next)) = (before.last_mut(), rest.first_mut()) {
+                own(region).look_ahead(&self.plan, own(next));
+            }
+        }
+        let Self { plan, laws, level, regions, .. } = self;
         let (gravity, planes) = (params.gravity, &params.planes[..]);
         for_each(regions.len(), workers, &|index| {
-            let mut region = lock(&regions[index]);
-            if *are_behind {
-                receive(&mut region, &borders[0], index);
-            }
-            level.run(Survey { region: &mut region, plan, laws, gravity, planes });
+            level.run(Survey { region: &mut lock(&regions[index]), plan, laws, gravity, planes });
         });
-        *are_behind = false;
+        let mut sums = self.sums();
+        for (loose, law) in self.plan.loose.iter().zip(&self.laws.loose) {
+            let Some(law) = *law else { continue };
+            sums.add_spring(law, loose.ends.map(|place| self.motion_at(place as usize)[0]));
+        }
+        sums.energy()
+    }
+
+    /// The kinetic energy of this state, J, with the very bits of [`energy`](Self::energy).
+    pub fn kinetic_energy(&mut self, workers: &dyn Workers) -> f64 {
+        let Self { level, regions, .. } = self;
+        for_each(regions.len(), workers, &|index| level.run(KineticSurvey(&mut lock(&regions[index]))));
+        self.sums().kinetic
+    }
+
+    /// The sums of all blocks' energies, from the first to the last.
+    fn sums(&mut self) -> Sums {
         let mut sums = Sums::default();
-        for region in &mut *regions {
+        for region in &mut self.regions {
             own(region).energies.iter().for_each(|block| sums.add(block));
         }
-        let motions = loose.read(plan, regions.iter_mut().map(|region| &*own(region)));
-        for (law, [[near, _], [far, _]]) in laws.loose.iter().zip(motions) {
-            if let Some(law) = *law {
-                sums.add_spring(law, [*near, *far]);
+        sums
+    }
+
+    /// Stops every point where it is.
+    pub fn stop(&mut self) {
+        for index in 0..self.regions.len() {
+            let mut region = lock(&self.regions[index]);
+            if self.are_behind {
+                receive(&mut region, &self.borders[0], index);
+            }
+            if self.are_kept_here {
+                region.move_away();
+            }
+            let Region { points, low, .. } = &mut *region;
+            for arrays in [points, low] {
+                arrays.all_mut()[3..].iter_mut().for_each(|velocity| velocity.fill(0.0));
             }
         }
-        Screen::new(sums, laws.norms, plan)
+        (self.are_behind, self.are_kept_here) = (false, false);
     }
 
     /// Position and velocity of one point in float64, with what rounding dropped.
     pub fn motion64(&self, model: &Model, point: usize) -> [DVec3; 2] {
-        let place = model.place_of(point);
+        self.motion_at(model.place_of(point))
+    }
+
+    fn motion_at(&self, place: usize) -> [DVec3; 2] {
         let region = lock(&self.regions[self.region_index(place)]);
         let at = region.index(place);
         let [x, y, z, u, v, w] = std::array::from_fn(|part| {
@@ -373,15 +415,26 @@ impl Team {
         }
     }
 
-    /// Hands out a region's own points from these arrays, in the user's order.
-    fn hand_out(&self, model: &Model, region: &Region, arrays: [&Arrays<6>; 2], state: &mut State) {
-        let [high, low] = arrays.map(Arrays::all);
+    /// Hands out a region's own points, and what rounding dropped of them, from these arrays, in the user's order.
+    fn hand_out_all(&self, model: &Model, region: &Region, [high, low]: [&Arrays<6>; 2], state: &mut State) {
+        let State { position, velocity, position_low, velocity_low, .. } = state;
+        self.hand_out(model, region, high, [position, velocity]);
+        self.hand_out(model, region, low, [position_low, velocity_low]);
+    }
+
+    /// Hands out one of the two.
+    fn hand_out(
+        &self,
+        model: &Model,
+        region: &Region,
+        arrays: &Arrays<6>,
+        [positions, velocities]: [&mut [Vec3]; 2],
+    ) {
+        let arrays = arrays.all();
         for place in region.blocks.start * BLOCK..self.plan.points.min(region.blocks.end * BLOCK) {
             let (at, point) = (region.index(place), model.point_at(place));
-            let [x, y, z, u, v, w] = high.map(|array| array[at]);
-            (state.position[point], state.velocity[point]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
-            let [x, y, z, u, v, w] = low.map(|array| array[at]);
-            (state.position_low[point], state.velocity_low[point]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
+            let [x, y, z, u, v, w] = arrays.map(|array| array[at]);
+            (positions[point], velocities[point]) = (Vec3::new(x, y, z), Vec3::new(u, v, w));
         }
     }
 
