@@ -43,10 +43,18 @@ pub(super) struct Forces {
     pub far: Arrays<3>,
     /// From packed springs, from the same block on; empty where there are none.
     pub packed: Vec<Force>,
-    /// Blocks in a slide.
-    slide: usize,
-    /// How far beyond a block its springs' forces may reach.
+    slide: Slide,
+}
+
+/// How sums at the points where springs end are kept while they are needed: from the first block of a slide on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slide {
+    /// Blocks in it.
+    blocks: usize,
+    /// How far beyond a block its springs may reach.
     reach: usize,
+    /// Whether there are packed springs.
+    has_packed: bool,
 }
 
 impl Region {
@@ -90,15 +98,12 @@ impl Region {
 
 impl Forces {
     fn new(plan: &Plan, blocks: usize) -> Self {
-        let reach = plan.reach.next_multiple_of(LANES);
-        let slide = blocks.clamp(1, LEAST_SLIDE.max(4 * reach / BLOCK)).next_multiple_of(GROUP);
-        let packed = if plan.bundles.is_empty() { 0 } else { slide * BLOCK + WINDOW };
+        let slide = Slide::new(plan, blocks);
         Self {
             near: Arrays::new(BLOCK),
-            far: Arrays::new(slide * BLOCK + reach),
-            packed: vec![[0.0; 4]; packed],
+            far: Arrays::new(slide.len()),
+            packed: vec![[0.0; 4]; slide.packed_len()],
             slide,
-            reach,
         }
     }
 
@@ -106,22 +111,54 @@ impl Forces {
     /// far as this block is the first to reach.
     #[inline(always)]
     pub fn begin_block(&mut self, count: usize) -> usize {
-        let Self { near, far, packed, slide, reach } = self;
-        let first = count % *slide * BLOCK;
-        let mut unused = first + *reach..first + *reach + BLOCK;
+        let Self { near, far, packed, slide } = self;
+        near.all_mut().into_iter().for_each(|sums| sums.fill(0.0));
+        slide.begin_block(count, far, std::slice::from_mut(packed))
+    }
+}
+
+impl Slide {
+    /// For a region of so many blocks.
+    pub fn new(plan: &Plan, blocks: usize) -> Self {
+        let reach = plan.reach.next_multiple_of(LANES);
+        let blocks = blocks.clamp(1, LEAST_SLIDE.max(4 * reach / BLOCK)).next_multiple_of(GROUP);
+        Self { blocks, reach, has_packed: !plan.bundles.is_empty() }
+    }
+
+    /// Points for which there must be room for stripes.
+    pub fn len(&self) -> usize {
+        self.blocks * BLOCK + self.reach
+    }
+
+    /// Points for which there must be room for packed springs.
+    pub fn packed_len(&self) -> usize {
+        if self.has_packed { self.blocks * BLOCK + WINDOW } else { 0 }
+    }
+
+    /// Before the block that is swept as number `count`: where its points are. Sets the sums to zero as far as this block is
+    /// the first to reach.
+    #[inline(always)]
+    pub fn begin_block<const N: usize>(
+        &self,
+        count: usize,
+        far: &mut Arrays<N>,
+        packed: &mut [Vec<Force>],
+    ) -> usize {
+        let Self { blocks, reach, has_packed } = *self;
+        let first = count % blocks * BLOCK;
+        let mut unused = first + reach..first + reach + BLOCK;
         if count == 0 {
             unused.start = 0;
         } else if first == 0 {
-            let begun = *slide * BLOCK..*slide * BLOCK + *reach;
+            let begun = blocks * BLOCK..blocks * BLOCK + reach;
             far.all_mut().into_iter().for_each(|sums| sums.copy_within(begun.clone(), 0));
-            if !packed.is_empty() {
-                packed.copy_within(begun, 0);
+            if has_packed {
+                packed.iter_mut().for_each(|sums| sums.copy_within(begun.clone(), 0));
             }
         }
-        near.all_mut().into_iter().for_each(|sums| sums.fill(0.0));
         far.all_mut().into_iter().for_each(|sums| sums[unused.clone()].fill(0.0));
-        if !packed.is_empty() {
-            packed[unused].fill([0.0; 4]);
+        if has_packed {
+            packed.iter_mut().for_each(|sums| sums[unused.clone()].fill([0.0; 4]));
         }
         first
     }

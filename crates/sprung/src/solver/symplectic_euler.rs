@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3};
 use crate::kernel::{Level, Screen, Team};
 use crate::model::Model;
 use crate::params::Params;
+use crate::stability::Limit;
 use crate::state::State;
 use crate::workers::Workers;
 
@@ -107,6 +108,11 @@ impl SymplecticEuler {
     /// The energies now, cheaply, and how far they may be off.
     pub(crate) fn screen(&mut self, params: &Params, workers: &dyn Workers) -> Screen {
         self.team.screen(params, workers)
+    }
+
+    /// The certified limit now, cheaply; `None` where only the exact one can tell.
+    pub(crate) fn certified(&mut self, params: &Params, workers: &dyn Workers) -> Option<Limit> {
+        self.team.certified(&self.model, params, workers)
     }
 
     /// One step of a state: its positions, velocities, step and time. Returns whether every position is still finite.

@@ -1,5 +1,6 @@
 //! The fast step against a plain one, and against itself: whatever instructions and however many regions, the same bits.
 
+mod limit;
 mod networks;
 mod order;
 mod same_bits;
