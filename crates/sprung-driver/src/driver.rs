@@ -320,7 +320,7 @@ impl Driver {
             self.energy = self.run.energy();
             self.energy_at = self.clock;
         }
-        self.limits.refresh(&self.run.simulation, &self.params, self.playing.on, self.clock);
+        self.limits.refresh(&mut self.run.simulation, &self.params, self.playing.on, self.clock);
     }
 
     /// Shows the state as it is, with no step that leads to it.

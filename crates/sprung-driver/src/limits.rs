@@ -40,10 +40,10 @@ impl Limits {
     }
 
     /// Finds what is due. `clock` is real time, s.
-    pub fn refresh(&mut self, simulation: &Simulation, params: &Arc<Params>, playing: bool, clock: f64) {
-        // Not the state: it is copied out only when a limit of it is due.
-        let (model, (step_now, _)) = (simulation.model(), simulation.now());
-        let is_small = model.spring_count() <= SMALL;
+    pub fn refresh(&mut self, simulation: &mut Simulation, params: &Arc<Params>, playing: bool, clock: f64) {
+        // Not the state: nobody needs it copied out for this.
+        let (step, _) = simulation.now();
+        let is_small = simulation.model().spring_count() <= SMALL;
         if !self.params.as_ref().is_some_and(|old| Arc::ptr_eq(old, params) || limits_are_same(old, params)) {
             self.every_is_stale = true;
             self.found.sharp_step = None;
@@ -57,15 +57,14 @@ impl Limits {
         }
         let is_changed = std::mem::take(&mut self.every_is_stale);
         if is_changed {
-            self.found.every_configuration =
-                stability::every_configuration(model, params).map(|limit| limit.dt);
+            self.found.every_configuration = simulation.limit_of_every_configuration().map(|limit| limit.dt);
         }
-        if is_changed || self.certified_at.is_none_or(|(step, _)| step != step_now) {
-            self.found.certified = stability::certified(model, params, &simulation.state().position);
-            self.certified_at = Some((step_now, clock));
+        if is_changed || self.certified_at.is_none_or(|(found, _)| found != step) {
+            self.found.certified = simulation.certified_limit();
+            self.certified_at = Some((step, clock));
         }
 
-        let is_known = self.found.sharp_step == Some(step_now);
+        let is_known = self.found.sharp_step == Some(step);
         let sharp_is_due = !playing || self.sharp_at.is_none_or(|time| clock - time >= SHARP_EVERY);
         if is_small && !is_known && sharp_is_due {
             self.find_sharp(simulation, clock);

@@ -148,6 +148,19 @@ impl Params {
             && Arc::ptr_eq(&self.spring_cut, &other.spring_cut)
     }
 
+    /// Whether all that the limit of every configuration depends on is that of `other`: the very same arrays, and equal planes,
+    /// grabs and hands.
+    pub(crate) fn shares_limits_with(&self, other: &Self) -> bool {
+        let pull = |grab: &Grab| (grab.point, grab.stiffness, grab.damping);
+        self.shares_masses_with(other)
+            && Arc::ptr_eq(&self.spring_stiffness, &other.spring_stiffness)
+            && Arc::ptr_eq(&self.spring_damping, &other.spring_damping)
+            && Arc::ptr_eq(&self.spring_cut, &other.spring_cut)
+            && self.planes == other.planes
+            && self.grabs.iter().map(pull).eq(other.grabs.iter().map(pull))
+            && self.carried.keys().eq(other.carried.keys())
+    }
+
     /// Memory of the long arrays that are not shared with `other`, bytes.
     pub(crate) fn bytes_apart_from(&self, other: &Self) -> usize {
         fn bytes<T>(mine: &Arc<Vec<T>>, theirs: &Arc<Vec<T>>) -> usize {

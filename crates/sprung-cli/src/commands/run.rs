@@ -46,7 +46,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     if !args.quiet {
         plan.announce();
     }
-    warn_of_large_dt(&simulation);
+    warn_of_large_dt(&mut simulation);
 
     let begun = Instant::now();
     let outcome = simulate(args, &plan, &mut simulation, &mut recorder, &interrupt);
@@ -215,7 +215,13 @@ fn settle(args: &RunArgs, simulation: &mut Simulation, interrupt: &Interrupt) ->
 }
 
 /// Says before the run that it will probably blow up. The sharp limit is only worth computing beyond the certified one.
-fn warn_of_large_dt(simulation: &Simulation) {
+fn warn_of_large_dt(simulation: &mut Simulation) {
+    // Quickly found, and never above the exact one.
+    let dt = simulation.params().dt;
+    if simulation.certified_limit().is_none_or(|limit| dt <= limit.dt) {
+        return;
+    }
+    let simulation = &*simulation;
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
     let Some(certified) = stability::certified(model, params, positions).filter(|limit| params.dt > limit.dt)
     else {

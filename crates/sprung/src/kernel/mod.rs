@@ -14,6 +14,8 @@
 //! - [`region`]: the points that one thread has; [`sweep`]: the pass through them.
 //! - [`team`]: all regions, and what they tell each other.
 //! - [`energy`]: a pass for the energies alone.
+//! - [`limit`]: one for the certified limit on dt, with the [`tensor`]s of springs, their largest [`eigenvalue`] and the
+//!   [`tightest`] spring.
 //! - [`level`]: which vector instructions are used.
 //!
 //! *The order of summation*, which fixes the bits, is a function of the model. A spring begins at the end that comes first
@@ -30,10 +32,12 @@
 //! Threads do not enter into it: see [`region`]. The twin in the tests is this list as plain code.
 
 mod aligned;
+mod eigenvalue;
 mod energy;
 mod integrate;
 mod laws;
 mod level;
+mod limit;
 mod loose;
 mod packed;
 mod plan;
@@ -42,8 +46,10 @@ mod spring;
 mod stripe;
 mod sweep;
 mod team;
+mod tensor;
 #[cfg(test)]
 mod tests;
+mod tightest;
 
 pub use level::Level;
 #[cfg(test)]

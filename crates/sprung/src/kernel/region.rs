@@ -48,12 +48,20 @@ pub(super) struct Forces {
     pub far: Arrays<3>,
     /// From packed springs, from the same block on; empty where there are none.
     pub packed: Vec<Force>,
-    /// Blocks in a slide.
-    slide: usize,
-    /// How far the forces of stripes may reach beyond the set of points where they begin, in whole sets.
+    pub slide: Slide,
+}
+
+/// How sums at the points where springs end are kept while they are needed: from the first block of a slide on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slide {
+    /// Blocks in it.
+    blocks: usize,
+    /// How far stripes may reach beyond the set of points where they begin, in whole sets.
     pub far_reach: usize,
-    /// How far beyond a block the forces of packed springs may reach.
+    /// How far beyond a block packed springs may reach.
     packed_reach: usize,
+    /// Whether there are packed springs.
+    has_packed: bool,
 }
 
 impl Region {
@@ -143,41 +151,70 @@ impl Clone for Forces {
 
 impl Forces {
     fn new(plan: &Plan, blocks: usize) -> Self {
-        let [far_reach, packed_reach] =
-            [plan.stripe_reach, plan.packed_reach].map(|reach| reach.next_multiple_of(LANES));
-        let slide = blocks.clamp(1, LEAST_SLIDE.max(4 * plan.reach() / BLOCK)).next_multiple_of(GROUP);
-        let packed = if plan.bundles.is_empty() { 0 } else { slide * BLOCK + WINDOW };
+        let slide = Slide::new(plan, blocks);
         Self {
             near: Arrays::new(BLOCK),
-            far: Arrays::new(slide * BLOCK + far_reach),
-            packed: vec![[0.0; 4]; packed],
+            far: Arrays::new(slide.len()),
+            packed: vec![[0.0; 4]; slide.packed_len()],
             slide,
-            far_reach,
-            packed_reach,
         }
     }
 
-    /// Before the block that is swept as number `count`: where its points are in `far`. Sets the forces of packed springs
-    /// to zero as far as this block is the first to reach. Those of stripes each set sets to zero for itself; before the
-    /// first there is nobody who would have.
+    /// Before the block that is swept as number `count`: where its points are in `far`. See [`Slide::begin_block`].
     #[inline(always)]
     pub fn begin_block(&mut self, count: usize) -> usize {
-        let Self { far, packed, slide, far_reach, packed_reach, .. } = self;
-        let (first, begun) = (count % *slide * BLOCK, *slide * BLOCK);
+        let Self { far, packed, slide, .. } = self;
+        slide.begin_block(count, far, std::slice::from_mut(packed))
+    }
+}
+
+impl Slide {
+    /// For a region of so many blocks.
+    pub fn new(plan: &Plan, blocks: usize) -> Self {
+        let [far_reach, packed_reach] =
+            [plan.stripe_reach, plan.packed_reach].map(|reach| reach.next_multiple_of(LANES));
+        let blocks = blocks.clamp(1, LEAST_SLIDE.max(4 * plan.reach() / BLOCK)).next_multiple_of(GROUP);
+        Self { blocks, far_reach, packed_reach, has_packed: !plan.bundles.is_empty() }
+    }
+
+    /// Points for which there must be room for stripes.
+    pub fn len(&self) -> usize {
+        self.blocks * BLOCK + self.far_reach
+    }
+
+    /// Points for which there must be room for packed springs.
+    pub fn packed_len(&self) -> usize {
+        if self.has_packed { self.blocks * BLOCK + WINDOW } else { 0 }
+    }
+
+    /// Before the block that is swept as number `count`: where its points are. Sets the sums of packed springs to zero as far
+    /// as this block is the first to reach. Those of stripes each set sets to zero for itself; before the first there is
+    /// nobody who would have.
+    #[inline(always)]
+    pub fn begin_block<const N: usize>(
+        &self,
+        count: usize,
+        far: &mut Arrays<N>,
+        packed: &mut [Vec<Force>],
+    ) -> usize {
+        let Self { blocks, far_reach, packed_reach, has_packed } = *self;
+        let (first, begun) = (count % blocks * BLOCK, blocks * BLOCK);
         let slides = first == 0 && count > 0;
         for sums in far.all_mut() {
             if slides {
-                sums.copy_within(begun..begun + *far_reach, 0);
+                sums.copy_within(begun..begun + far_reach, 0);
             } else if count == 0 {
-                sums[..*far_reach].fill(0.0);
+                sums[..far_reach].fill(0.0);
             }
         }
-        if !packed.is_empty() {
-            if slides {
-                packed.copy_within(begun..begun + *packed_reach, 0);
+        if has_packed {
+            let unused = if count == 0 { 0 } else { first + packed_reach }..first + packed_reach + BLOCK;
+            for sums in packed {
+                if slides {
+                    sums.copy_within(begun..begun + packed_reach, 0);
+                }
+                sums[unused.clone()].fill([0.0; 4]);
             }
-            let unused = if count == 0 { 0 } else { first + *packed_reach }..first + *packed_reach + BLOCK;
-            packed[unused].fill([0.0; 4]);
         }
         first
     }

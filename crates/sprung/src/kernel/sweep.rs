@@ -84,8 +84,8 @@ impl Sweep<'_> {
             let forces = &mut region.forces.packed[far_at..];
             packed::accumulate(region.points.onwards(first), plan, laws, index, forces, springs);
         }
-        let Forces { near, far, far_reach, .. } = &mut region.forces;
-        let (len, reach) = (far.len() - far_at, *far_reach);
+        let Forces { near, far, slide, .. } = &mut region.forces;
+        let (len, reach) = (far.len() - far_at, slide.far_reach);
         let [far_x, far_y, far_z] = far.all_mut().map(|array| &mut array[far_at..][..len]);
         let [near_x, near_y, near_z] = near.all_mut();
         let [near_x, near_y, near_z] = [block_mut(near_x), block_mut(near_y), block_mut(near_z)];

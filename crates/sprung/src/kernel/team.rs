@@ -3,12 +3,15 @@
 //! Before a step a region copies its neighbours' points as far as springs reach, and after it leaves its own for them, in
 //! one of two sets in turn: one is read while the other is written, so that one fork and join for each step is enough.
 
+mod certify;
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DVec3, Vec3};
 
+use self::certify::Certifier;
 use super::aligned::Arrays;
 use super::energy::{KineticSurvey, Sums, Survey};
 use super::integrate::Field;
@@ -57,6 +60,7 @@ pub(crate) struct Team {
     pushes: Vec<Push>,
     /// Whether the state that is [kept](Self::keep) is the current one; if not, it is in the regions' other arrays.
     are_kept_here: bool,
+    certifier: Certifier,
 }
 
 /// A region's points that its neighbours need.
@@ -86,6 +90,7 @@ impl Clone for Team {
             loose: self.loose.clone(),
             pushes: self.pushes.clone(),
             are_kept_here: self.are_kept_here,
+            certifier: Certifier::default(),
         }
     }
 }
@@ -105,6 +110,7 @@ impl Team {
             are_behind: false,
             pushes: Vec::new(),
             are_kept_here: false,
+            certifier: Certifier::default(),
         };
         team.divide(1);
         team.set_masses(model, params);
@@ -131,6 +137,7 @@ impl Team {
     /// Stiffness, damping, rest lengths or cuts have changed.
     pub fn set_laws(&mut self, model: &Model, params: &Params) {
         Arc::make_mut(&mut self.laws).fill(&self.plan, model, params);
+        self.certifier.forget_laws();
     }
 
     /// Masses or pins have changed.
@@ -460,6 +467,7 @@ impl Team {
         self.borders = [borders(), borders()];
         self.regions = ranges.map(|blocks| Mutex::new(Region::new(&self.plan, blocks))).collect();
         (self.are_behind, self.are_kept_here) = (false, false);
+        self.certifier.forget_regions();
     }
 
     fn region_index(&self, place: usize) -> usize {

@@ -8,6 +8,7 @@ use crate::energy::Energy;
 use crate::kernel::{Level, Team};
 use crate::model::Model;
 use crate::params::Params;
+use crate::stability::Limit;
 use crate::state::{Snapshot, State};
 use crate::workers::Workers;
 
@@ -124,6 +125,11 @@ impl SymplecticEuler {
     /// Hands out positions and velocities, without what rounding dropped, and leaves the rest of the snapshot as it is.
     pub(crate) fn fill(&self, snapshot: &mut Snapshot) {
         self.team.fill(&self.model, snapshot);
+    }
+
+    /// The certified limit now, cheaply; `None` where only the exact one can tell.
+    pub(crate) fn certified(&mut self, params: &Params, workers: &dyn Workers) -> Option<Limit> {
+        self.team.certified(&self.model, params, workers)
     }
 
     /// One step of a state: its positions, velocities, step and time. Returns whether every position is still finite.

@@ -48,6 +48,9 @@ const ROUNDING: f64 = 1e-12;
 /// S and A of a fixed point are zero. A spring between coincident points has no direction: B = k·I, damping k_d·I.
 /// Cut springs and springs between two fixed points do not count; repeated springs add up.
 ///
+/// It takes as long as some hundred steps, in float64 and on one thread;
+/// [`Simulation::certified_limit`](crate::Simulation::certified_limit) is the same for a simulation at what a few steps take.
+///
 /// `positions` holds one position per point, m. It may hold anything: a spring at a position that is not finite
 /// counts as if it had no direction.
 ///
@@ -68,19 +71,21 @@ const ROUNDING: f64 = 1e-12;
 /// # Panics
 /// If `params` is not of this model ([`Params::validate`]), or there are fewer positions than points.
 pub fn certified(model: &Model, params: &Params, positions: &[Vec3]) -> Option<Limit> {
-    let (springs, anchors) = loads(model, params, positions);
-    tightest(model, params, &springs, &anchors)
+    let inverse_masses = inverse_masses(params);
+    let (springs, anchors) = loads(model, params, positions, &inverse_masses);
+    tightest(model, params, &inverse_masses, &springs, &anchors)
 }
 
 /// The loads of springs and of anchors at each point in one configuration.
-fn loads(model: &Model, params: &Params, positions: &[Vec3]) -> (Vec<Load>, Vec<Load>) {
+fn loads(
+    model: &Model,
+    params: &Params,
+    positions: &[Vec3],
+    inverse_masses: &[f64],
+) -> (Vec<Load>, Vec<Load>) {
     let mut stiffness = vec![Symmetric3::default(); model.point_count()];
     let mut damping = stiffness.clone();
-    for (spring, &[i, j]) in model.springs().iter().enumerate() {
-        if !params.is_live(model, spring) {
-            continue;
-        }
-        let (i, j) = (i as usize, j as usize);
+    for (spring, [i, j]) in live_springs(model, params, inverse_masses) {
         let k = f64::from(params.spring_stiffness[spring]);
         let d = f64::from(params.spring_damping[spring]);
         let rest_length = f64::from(params.spring_rest_length[spring]);
@@ -94,22 +99,23 @@ fn loads(model: &Model, params: &Params, positions: &[Vec3]) -> (Vec<Load>, Vec<
             damping[end].add(n, d, damping_across);
         }
     }
-    let springs = (0..model.point_count())
-        .map(|point| {
-            let per_mass = inverse_mass(params, point);
-            if per_mass == 0.0 {
-                return Load::default();
-            }
-            let [omega2, c] =
-                [stiffness[point], damping[point]].map(|sum| sum.largest_eigenvalue() * per_mass);
-            Load { omega2, c }
-        })
-        .collect();
-    (springs, anchor_loads(params, |plane, point| plane.depth(positions[point]) > 0.0))
+    let load = |(point, &per_mass): (usize, &f64)| {
+        if per_mass == 0.0 {
+            return Load::default();
+        }
+        let [omega2, c] = [stiffness[point], damping[point]].map(|sum| sum.largest_eigenvalue() * per_mass);
+        Load { omega2, c }
+    };
+    let springs = inverse_masses.iter().enumerate().map(load).collect();
+    let touches = |plane: &Plane, point: usize| plane.depth(positions[point]) > 0.0;
+    (springs, anchor_loads(params, inverse_masses, touches))
 }
 
 /// A limit on dt that is safe in every configuration the network can ever take, with every point touching every
 /// plane. `None` if nothing limits dt. It changes only with masses, pins, stiffness, damping, cuts, planes and grabs.
+///
+/// It takes as long as six or seven steps; a simulation remembers it
+/// ([`limit_of_every_configuration`](crate::Simulation::limit_of_every_configuration)).
 ///
 /// As [`certified`], but with B ⪯ k·I for every direction and length: S_i = Σ_{s∋i} k_s/m_i, likewise of k_d.
 ///
@@ -131,28 +137,27 @@ fn loads(model: &Model, params: &Params, positions: &[Vec3]) -> (Vec<Load>, Vec<
 /// # Panics
 /// If `params` is not of this model ([`Params::validate`]).
 pub fn every_configuration(model: &Model, params: &Params) -> Option<Limit> {
-    let (springs, anchors) = loads_everywhere(model, params);
+    let inverse_masses = inverse_masses(params);
+    let (springs, anchors) = loads_everywhere(model, params, &inverse_masses);
     // Rounded down once more: equal limits may round differently, and this one is never to be above the certified.
-    let limit = tightest(model, params, &springs, &anchors)?;
+    let limit = tightest(model, params, &inverse_masses, &springs, &anchors)?;
     Some(Limit { dt: limit.dt * (1.0 - ROUNDING), ..limit })
 }
 
 /// The largest loads of springs and of anchors at each point that any configuration has.
-fn loads_everywhere(model: &Model, params: &Params) -> (Vec<Load>, Vec<Load>) {
+fn loads_everywhere(model: &Model, params: &Params, inverse_masses: &[f64]) -> (Vec<Load>, Vec<Load>) {
     let mut springs = vec![Load::default(); model.point_count()];
-    for (spring, &[i, j]) in model.springs().iter().enumerate() {
-        if params.is_live(model, spring) {
-            let k = f64::from(params.spring_stiffness[spring]);
-            let d = f64::from(params.spring_damping[spring]);
-            for end in [i, j] {
-                springs[end as usize] = springs[end as usize] + Load { omega2: k, c: d };
-            }
+    for (spring, ends) in live_springs(model, params, inverse_masses) {
+        let k = f64::from(params.spring_stiffness[spring]);
+        let d = f64::from(params.spring_damping[spring]);
+        for end in ends {
+            springs[end] = springs[end] + Load { omega2: k, c: d };
         }
     }
-    for (point, load) in springs.iter_mut().enumerate() {
-        *load = load.times(inverse_mass(params, point));
+    for (load, &per_mass) in springs.iter_mut().zip(inverse_masses) {
+        *load = load.times(per_mass);
     }
-    (springs, anchor_loads(params, |_, _| true))
+    (springs, anchor_loads(params, inverse_masses, |_, _| true))
 }
 
 /// The factor on the damping of all springs that makes the step `dt` this share of the certified limit, or, where it is
@@ -165,10 +170,11 @@ pub(crate) fn damping_scale(
     share: f64,
 ) -> Option<f64> {
     let is_over = |limit: Option<Limit>| limit.is_some_and(|limit| dt > limit.dt);
+    let inverse_masses = inverse_masses(params);
     let (springs, anchors) = if is_over(certified(model, params, positions)) {
-        loads(model, params, positions)
+        loads(model, params, positions, &inverse_masses)
     } else if is_over(every_configuration(model, params)) {
-        loads_everywhere(model, params)
+        loads_everywhere(model, params, &inverse_masses)
     } else {
         return None;
     };
@@ -176,15 +182,12 @@ pub(crate) fn damping_scale(
     // dt²ω² + 2dt(s·c + c_anchor) ≤ 4 at every spring, and at every anchor by itself.
     let anchors_allow = anchors.iter().all(|anchor| anchor.demand(dt) < 4.0);
     let mut scale: f64 = 1.0;
-    for (spring, ends) in model.springs().iter().enumerate() {
-        if params.is_live(model, spring) {
-            let [i, j] = ends.map(|end| end as usize);
-            let (here, anchor) = (springs[i] + springs[j], anchors[i].max(anchors[j]));
-            let without_dampers = Load { c: anchor.c, ..here + anchor };
-            let left = 4.0 - without_dampers.demand(dt);
-            if here.c > 0.0 || left <= 0.0 {
-                scale = scale.min(left / (2.0 * dt * here.c));
-            }
+    for (_, [i, j]) in live_springs(model, params, &inverse_masses) {
+        let (here, anchor) = (springs[i] + springs[j], anchors[i].max(anchors[j]));
+        let without_dampers = Load { c: anchor.c, ..here + anchor };
+        let left = 4.0 - without_dampers.demand(dt);
+        if here.c > 0.0 || left <= 0.0 {
+            scale = scale.min(left / (2.0 * dt * here.c));
         }
     }
     (anchors_allow && scale > 0.0 && scale < 1.0).then_some(scale)
@@ -220,13 +223,33 @@ impl Add for Load {
     }
 }
 
-/// 1/m in float64, zero for a fixed point.
-fn inverse_mass(params: &Params, point: usize) -> f64 {
-    if params.is_fixed(point) { 0.0 } else { 1.0 / f64::from(params.point_mass[point]) }
+/// 1/m of each point in float64, zero for a fixed one.
+fn inverse_masses(params: &Params) -> Vec<f64> {
+    let inverse =
+        |point| if params.is_fixed(point) { 0.0 } else { 1.0 / f64::from(params.point_mass[point]) };
+    (0..params.point_mass.len()).map(inverse).collect()
+}
+
+/// The springs that can move anything, as [`Params::is_live`] has it, and their ends.
+fn live_springs(
+    model: &Model,
+    params: &Params,
+    inverse_masses: &[f64],
+) -> impl Iterator<Item = (usize, [usize; 2])> {
+    let springs = model.springs().iter().zip(params.spring_cut.iter()).enumerate();
+    springs.filter_map(|(spring, (ends, is_cut))| {
+        let ends = ends.map(|end| end as usize);
+        let is_live = !is_cut && ends.iter().any(|&end| inverse_masses[end] > 0.0);
+        is_live.then_some((spring, ends))
+    })
 }
 
 /// What the touched planes and the grabs add at each point.
-fn anchor_loads(params: &Params, touches: impl Fn(&Plane, usize) -> bool) -> Vec<Load> {
+fn anchor_loads(
+    params: &Params,
+    inverse_masses: &[f64],
+    touches: impl Fn(&Plane, usize) -> bool,
+) -> Vec<Load> {
     let mut loads = vec![Load::default(); params.point_mass.len()];
     for plane in &params.planes {
         // The normal enters the force twice, and float32 lets it be a little longer than 1.
@@ -243,32 +266,59 @@ fn anchor_loads(params: &Params, touches: impl Fn(&Plane, usize) -> bool) -> Vec
         loads[grab.point] =
             loads[grab.point] + Load { omega2: f64::from(grab.stiffness), c: f64::from(grab.damping) };
     }
-    for (point, load) in loads.iter_mut().enumerate() {
-        *load = load.times(inverse_mass(params, point));
+    for (load, &per_mass) in loads.iter_mut().zip(inverse_masses) {
+        *load = load.times(per_mass);
     }
     loads
 }
 
 /// The smallest limit over all live springs and anchored points, and what sets it.
-fn tightest(model: &Model, params: &Params, springs: &[Load], anchors: &[Load]) -> Option<Limit> {
-    let mut tightest: Option<Limit> = None;
+fn tightest(
+    model: &Model,
+    params: &Params,
+    inverse_masses: &[f64],
+    springs: &[Load],
+    anchors: &[Load],
+) -> Option<Limit> {
+    let mut tightest: Option<(Limit, Load)> = None;
     let mut consider = |load: Load, setter: Setter| {
+        // No root for a load that is no larger in anything: in a lattice most are alike.
+        if tightest.is_some_and(|(_, most)| load.omega2 <= most.omega2 && load.c <= most.c) {
+            return;
+        }
         if let Some(dt) = limit_of_mode(load.omega2, load.c)
-            && tightest.is_none_or(|limit| dt < limit.dt)
+            && tightest.is_none_or(|(limit, _)| dt < limit.dt)
         {
-            tightest = Some(Limit { dt, setter });
+            tightest = Some((Limit { dt, setter }, load));
         }
     };
-    for (spring, &[i, j]) in model.springs().iter().enumerate() {
-        if params.is_live(model, spring) {
-            let (i, j) = (i as usize, j as usize);
-            consider(springs[i] + springs[j] + anchors[i].max(anchors[j]), Setter::Spring(spring));
-        }
+    for (spring, [i, j]) in live_springs(model, params, inverse_masses) {
+        consider(springs[i] + springs[j] + anchors[i].max(anchors[j]), Setter::Spring(spring));
     }
     for (point, &load) in anchors.iter().enumerate() {
         consider(load, Setter::Point(point));
     }
-    tightest.map(|limit| Limit { dt: limit.dt * (1.0 - ROUNDING), setter: blame(model, limit, anchors) })
+    let (limit, _) = tightest?;
+    Some(Limit { dt: limit.dt * (1.0 - ROUNDING), setter: blame(model, limit, anchors) })
+}
+
+/// The smallest limit that some springs set, and the anchors of a point, s: for the kernel's tests.
+#[cfg(test)]
+pub(crate) fn limit_of_springs_at(
+    model: &Model,
+    params: &Params,
+    positions: &[Vec3],
+    springs: &[usize],
+    point: Option<usize>,
+) -> f64 {
+    let (loads, anchors) = loads(model, params, positions, &inverse_masses(params));
+    let live = springs.iter().filter(|&&spring| params.is_live(model, spring));
+    let of_springs = live.map(|&spring| {
+        let [i, j] = model.springs()[spring].map(|end| end as usize);
+        loads[i] + loads[j] + anchors[i].max(anchors[j])
+    });
+    let all = of_springs.chain(point.map(|point| anchors[point]));
+    all.filter_map(|load| limit_of_mode(load.omega2, load.c)).fold(f64::INFINITY, f64::min)
 }
 
 /// Where a contact or grab at a spring's end makes more than half of the demand, it is to blame and not the spring.

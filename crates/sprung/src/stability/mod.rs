@@ -30,6 +30,10 @@
 //! | [`certified`] | a safe dt in this configuration, 52 to 100 % of the true limit in networks like the four scenes | one pass |
 //! | [`sharp`] | the true limit in this configuration, to 0.1 % or better | tens to hundreds of passes |
 //!
+//! A running simulation finds the first two more cheaply: [`Simulation::certified_limit`](crate::Simulation::certified_limit)
+//! in the layout of the step, a little on the safe side, and
+//! [`limit_of_every_configuration`](crate::Simulation::limit_of_every_configuration) once for the same parameters.
+//!
 //! All three use only + − × ÷ √ in a fixed order: a dt chosen from them has the same bits on every machine.
 
 mod certified;
@@ -39,6 +43,8 @@ mod symmetric3;
 mod top_mode;
 
 pub(crate) use certified::damping_scale;
+#[cfg(test)]
+pub(crate) use certified::limit_of_springs_at;
 pub use certified::{certified, every_configuration};
 pub use sharp::{Sharp, sharp};
 
@@ -113,6 +119,12 @@ fn limit_of_mode(omega2: f64, c: f64) -> Option<f64> {
     let denominator = c + discriminant.max(0.0).sqrt();
     let dt = 4.0 / denominator;
     (discriminant >= 0.0 && denominator > 0.0 && dt.is_finite()).then_some(dt)
+}
+
+/// The largest eigenvalue of the symmetric matrix xx, yy, zz, xy, xz, yz, for the kernel's tests.
+#[cfg(test)]
+pub(crate) fn largest_eigenvalue([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
+    symmetric3::Symmetric3 { m: [[xx, xy, xz], [0.0, yy, yz], [0.0, 0.0, zz]] }.largest_eigenvalue()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod energy;
 mod far_apart;
+mod limit;
 mod networks;
 mod order;
 mod same_bits;
