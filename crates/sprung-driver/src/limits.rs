@@ -41,7 +41,7 @@ impl Limits {
 
     /// Finds what is due. `clock` is real time, s.
     pub fn refresh(&mut self, simulation: &mut Simulation, params: &Arc<Params>, playing: bool, clock: f64) {
-        // Not the state: nobody needs it copied out for this.
+        // Not the state: it is copied out only when a limit of a small model is due.
         let (step, _) = simulation.now();
         let is_small = simulation.model().spring_count() <= SMALL;
         if !self.params.as_ref().is_some_and(|old| Arc::ptr_eq(old, params) || limits_are_same(old, params)) {
@@ -60,7 +60,13 @@ impl Limits {
             self.found.every_configuration = simulation.limit_of_every_configuration().map(|limit| limit.dt);
         }
         if is_changed || self.certified_at.is_none_or(|(found, _)| found != step) {
-            self.found.certified = simulation.certified_limit();
+            // Where it costs little, the very limit and the very spring that `sprung show` names: of springs alike, rounding
+            // picks one.
+            self.found.certified = if is_small {
+                stability::certified(simulation.model(), params, &simulation.state().position)
+            } else {
+                simulation.certified_limit()
+            };
             self.certified_at = Some((step, clock));
         }
 
