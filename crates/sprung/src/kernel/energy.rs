@@ -30,6 +30,7 @@ use glam::{DVec3, Vec3};
 use super::aligned::Arrays;
 use super::laws::Laws;
 use super::level::Work;
+use super::packed::{gather, window};
 use super::plan::{Bundle, Plan, WINDOW};
 use super::region::Region;
 use super::spring::LawLanes;
@@ -151,10 +152,10 @@ impl Survey<'_> {
     fn springs<const EXACT_ROOTS: bool>(&self, index: usize, at: usize) -> f64 {
         let Self { region, plan, laws, .. } = self;
         let points = region.wide.arrays.all().map(|array| &array[at..]);
-        let near = points.map(wide_block);
+        let near = points.map(stripe::block);
         let mut sum = [0.0; LANES];
         for stripe in plan.blocks[index].stripes.clone() {
-            let far = points.map(|array| wide_block(&array[plan.stripes[stripe].offset..]));
+            let far = points.map(|array| stripe::block(&array[plan.stripes[stripe].offset..]));
             let (law, mask) = (&laws.stripes[stripe], &laws.masks[stripe]);
             for set in (0..SETS).filter(|&set| mask[set] != 0) {
                 let squares = squares(near.map(|near| &near[set]), far.map(|far| &far[set]));
@@ -164,7 +165,7 @@ impl Survey<'_> {
         }
         for bundle in plan.blocks[index].bundles.clone() {
             let Bundle { points: begins, rows } = &plan.bundles[bundle];
-            let windows = region.wide.arrays.onwards(at).map(wide_window);
+            let windows = region.wide.arrays.onwards(at).map(window);
             let near = windows.map(|array| gather(array, begins));
             for (set, row) in rows.clone().enumerate() {
                 let far = windows.map(|array| gather(array, &plan.rows[row]));
@@ -180,7 +181,7 @@ impl Survey<'_> {
     #[inline(always)]
     fn points(&self, index: usize, at: usize) -> [f64; 2] {
         let Self { region, gravity, planes, .. } = self;
-        let [x, y, z] = region.wide.arrays.all().map(|array| wide_block(&array[at..]));
+        let [x, y, z] = region.wide.arrays.all().map(|array| stripe::block(&array[at..]));
         let mass = masses(region, index);
         let [gx, gy, gz] = gravity.as_dvec3().to_array();
         let [mut lift, mut contact] = [[0.0; LANES]; 2];
@@ -320,27 +321,6 @@ fn total(mut sum: Wide) -> f64 {
         half /= 2;
     }
     sum[0]
-}
-
-/// What lies at the points of a block, given what lies from the first of them on.
-#[inline(always)]
-fn wide_block(values: &[f64]) -> &[Wide; SETS] {
-    values.as_chunks().0.first_chunk().expect("arrays end with a block to spare")
-}
-
-/// What a 16-bit number can be an index into: nothing is left to be checked for each lane.
-#[inline(always)]
-fn wide_window(values: &[f64]) -> &[f64; WINDOW] {
-    values.first_chunk().expect("arrays end with a window to spare")
-}
-
-#[inline(always)]
-fn gather(values: &[f64; WINDOW], at: &[u16; LANES]) -> Wide {
-    let mut gathered = [0.0; LANES];
-    for lane in 0..LANES {
-        gathered[lane] = values[at[lane] as usize];
-    }
-    gathered
 }
 
 #[cfg(test)]

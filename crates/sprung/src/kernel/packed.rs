@@ -60,13 +60,13 @@ fn hand_out([x, y, z]: [&Lanes; 3], points: &[u16; LANES], forces: &mut [Force; 
 }
 
 #[inline(always)]
-pub(super) fn window(values: &[f32]) -> &[f32; WINDOW] {
+pub(super) fn window<T>(values: &[T]) -> &[T; WINDOW] {
     values.first_chunk().expect("arrays end with a window to spare")
 }
 
 #[inline(always)]
-pub(super) fn gather(values: &[f32; WINDOW], at: &[u16; LANES]) -> Lanes {
-    let mut gathered = [0.0; LANES];
+pub(super) fn gather<T: Copy + Default>(values: &[T; WINDOW], at: &[u16; LANES]) -> [T; LANES] {
+    let mut gathered = [T::default(); LANES];
     for lane in 0..LANES {
         gathered[lane] = values[at[lane] as usize];
     }

@@ -78,7 +78,7 @@ pub(super) fn lanes_mut(values: &mut [f32]) -> &mut Lanes {
 
 /// What lies at the points of a block, given what lies from the first of them on.
 #[inline(always)]
-pub(super) fn block(values: &[f32]) -> &Block {
+pub(super) fn block<T>(values: &[T]) -> &[[T; LANES]; SETS] {
     values.as_chunks().0.first_chunk().expect("arrays end with a block to spare")
 }
 
