@@ -59,7 +59,7 @@ pub struct Place {
 /// let error = sprung::Error::new(sprung::Code::OutOfRange, "is -3, and must be at least 0").at_field("damping");
 /// assert_eq!(error.to_string(), "damping: is -3, and must be at least 0");
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Error(Box<Parts>);
 
 #[derive(Clone, Debug, PartialEq)]
@@ -149,6 +149,13 @@ impl Error {
             Code::Interrupted => 130,
             _ => 2,
         }
+    }
+}
+
+/// The sentence and its code: it is what a program prints whose `main` returns an error.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self} ({:?})", self.code())
     }
 }
 
