@@ -9,6 +9,9 @@ pub trait Workers: Send + Sync {
     fn count(&self) -> usize;
 
     /// Calls `job(0)`, …, `job(count − 1)`, each on a thread of its own, and returns when all are done.
+    ///
+    /// Jobs wait for each other for a moment, never for long: where they cannot run at the same time all goes well, but
+    /// slowly.
     fn run(&self, job: &(dyn Fn(usize) + Sync));
 }
 
@@ -32,7 +35,9 @@ impl Workers for rayon::ThreadPool {
         self.current_num_threads()
     }
 
+    /// From within the pool, so that the caller sleeps before the others are woken: they do not have to look for a processor
+    /// that is free while it still holds one.
     fn run(&self, job: &(dyn Fn(usize) + Sync)) {
-        self.broadcast(|context| job(context.index()));
+        self.install(|| self.broadcast(|context| job(context.index())));
     }
 }

@@ -57,7 +57,8 @@ fn threads_allocate_nothing() {
     run.change(Change::Force(20_000, Vec3::Y)).expect("allowed");
     workers.taken.store(0, Ordering::Relaxed);
     assert_steps_allocate_nothing(&mut run, 25, "a large cloth, driven");
-    assert!(workers.called.load(Ordering::Relaxed) > 50, "it is large enough for several threads");
+    // The last 25 steps one by one, as something drives them.
+    assert!(workers.called.load(Ordering::Relaxed) > 27, "it is large enough for several threads");
     assert_eq!(workers.taken.load(Ordering::Relaxed), 0, "allocations on worker threads");
 }
 

@@ -1,17 +1,14 @@
-//! All regions: which thread sweeps which, and what they tell each other.
-//!
-//! Before a step a region copies its neighbours' points as far as springs reach, and after it leaves its own for them, in
-//! one of two sets in turn: one is read while the other is written, so that one fork and join for each step is enough.
+//! All regions: into how many the points are divided, and how states go in and out.
 
 mod certify;
+mod march;
 
-use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DVec3, Vec3};
 
 use self::certify::Certifier;
+use self::march::{Border, Taken, for_each, receive};
 use super::aligned::Arrays;
 use super::energy::{KineticSurvey, Sums, Survey};
 use super::integrate::Field;
@@ -52,8 +49,10 @@ pub(crate) struct Team {
     level: Checked,
     worth: Worth,
     regions: Vec<Mutex<Region>>,
-    /// What regions left for their neighbours at the last step, and where they leave it at the next.
+    /// What regions left for their neighbours at the last step, and where they leave it at the next; none for one region alone.
     borders: [Vec<Mutex<Border>>; 2],
+    /// How many steps each region has taken, while they take some.
+    taken: Vec<Taken>,
     /// Whether regions have yet to copy what their neighbours left.
     are_behind: bool,
     loose: LooseMotions,
@@ -61,15 +60,6 @@ pub(crate) struct Team {
     /// Whether the state that is [kept](Self::keep) is the current one; if not, it is in the regions' other arrays.
     are_kept_here: bool,
     certifier: Certifier,
-}
-
-/// A region's points that its neighbours need.
-#[derive(Clone, Debug)]
-struct Border {
-    /// Its first points, where springs of the region before it end.
-    first: Arrays<6>,
-    /// Its last blocks, whose springs may end in the region after it.
-    last: Arrays<6>,
 }
 
 impl Clone for Team {
@@ -84,6 +74,7 @@ impl Clone for Team {
             laws: self.laws.clone(),
             level: self.level,
             worth: self.worth,
+            taken: self.regions.iter().map(|_| Taken::default()).collect(),
             regions,
             borders,
             are_behind: self.are_behind,
@@ -107,6 +98,7 @@ impl Team {
             worth: Worth::default(),
             regions: Vec::new(),
             borders: [Vec::new(), Vec::new()],
+            taken: Vec::new(),
             are_behind: false,
             pushes: Vec::new(),
             are_kept_here: false,
@@ -292,57 +284,6 @@ impl Team {
         [DVec3::new(x, y, z), DVec3::new(u, v, w)]
     }
 
-    /// Takes up to so many steps, and stops after one that leaves a position that is not finite. Returns how many it took and
-    /// whether all positions are finite.
-    pub fn advance(
-        &mut self,
-        model: &Model,
-        params: &Params,
-        steps: u64,
-        workers: &dyn Workers,
-    ) -> (u64, bool) {
-        if self.wanted_regions(workers.count()) != self.regions.len() {
-            self.redivide(model, params, workers.count());
-        }
-        match (1..=steps).find(|_| !self.step(model, params, workers)) {
-            Some(failed) => (failed, false),
-            None => (steps, true),
-        }
-    }
-
-    fn step(&mut self, model: &Model, params: &Params, workers: &dyn Workers) -> bool {
-        self.gather_pushes(model, params);
-        let Self { plan, laws, level, regions, borders, are_behind, pushes, are_kept_here, .. } = self;
-        let field = Field { gravity: params.gravity, planes: &params.planes, dt: params.dt as f32 };
-        let [left, leave] = &*borders;
-        let sweep = |index: usize| {
-            let mut region = lock(&regions[index]);
-            if *are_behind {
-                receive(&mut region, left, index);
-            }
-            let purpose = if *are_kept_here { Purpose::MoveAway } else { Purpose::Move };
-            let finite = level.run(Sweep { region: &mut region, plan, laws, field, pushes, purpose });
-            if *are_kept_here {
-                region.swap();
-            }
-            if regions.len() > 1 {
-                lock(&leave[index]).take(&region);
-            }
-            finite
-        };
-        let finite = AtomicBool::new(true);
-        for_each(regions.len(), workers, &|index| {
-            if !sweep(index) {
-                finite.store(false, Ordering::Relaxed);
-            }
-        });
-        let finite = finite.into_inner();
-        self.borders.swap(0, 1);
-        self.are_behind = self.regions.len() > 1;
-        self.are_kept_here = false;
-        finite
-    }
-
     /// The force on each point at this state, N, in the user's order, as the next step would use it, weight included.
     pub fn forces(&mut self, model: &Model, params: &Params, into: &mut Vec<Vec3>) {
         self.gather_pushes(model, params);
@@ -458,13 +399,11 @@ impl Team {
         };
         let ranges = (0..count).map(|region| end(region)..end(region + 1));
         let borders = || {
-            let border = |blocks: Range<usize>| Border {
-                first: Arrays::new(self.plan.reach().min(blocks.len() * BLOCK)),
-                last: Arrays::new(border * BLOCK),
-            };
-            if count > 1 { ranges.clone().map(border).map(Mutex::new).collect() } else { Vec::new() }
+            let borders = ranges.clone().map(|blocks| Mutex::new(Border::new(&self.plan, &blocks, border)));
+            if count > 1 { borders.collect() } else { Vec::new() }
         };
         self.borders = [borders(), borders()];
+        self.taken = ranges.clone().map(|_| Taken::default()).collect();
         self.regions = ranges.map(|blocks| Mutex::new(Region::new(&self.plan, blocks))).collect();
         (self.are_behind, self.are_kept_here) = (false, false);
         self.certifier.forget_regions();
@@ -477,47 +416,6 @@ impl Team {
     fn region_of(&mut self, place: usize) -> &mut Mutex<Region> {
         let index = self.region_index(place);
         &mut self.regions[index]
-    }
-}
-
-impl Border {
-    /// Copies what a region's neighbours need of it.
-    fn take(&mut self, region: &Region) {
-        let begin = (region.blocks.start - region.first_block) * BLOCK;
-        let end = (region.blocks.end - region.first_block) * BLOCK;
-        for (points, first) in region.points.all().into_iter().zip(self.first.all_mut()) {
-            first.copy_from_slice(&points[begin..begin + first.len()]);
-        }
-        for (points, last) in region.points.all().into_iter().zip(self.last.all_mut()) {
-            last.copy_from_slice(&points[end - last.len()..end]);
-        }
-    }
-}
-
-/// Does something for each of so many regions, on the threads that there are.
-fn for_each(regions: usize, workers: &dyn Workers, job: &(dyn Fn(usize) + Sync)) {
-    if regions == 1 {
-        return job(0);
-    }
-    let threads = workers.count().max(1);
-    workers.run(&|worker| (worker..regions).step_by(threads).for_each(job));
-}
-
-/// Copies what a region's neighbours left for it.
-fn receive(region: &mut Region, borders: &[Mutex<Border>], index: usize) {
-    let end = (region.blocks.end - region.first_block) * BLOCK;
-    let before = (region.blocks.start - region.first_block) * BLOCK;
-    if let Some(index) = index.checked_sub(1) {
-        let border = lock(&borders[index]);
-        for (points, last) in region.points.all_mut().into_iter().zip(border.last.all()) {
-            points[..before].copy_from_slice(&last[last.len() - before..]);
-        }
-    }
-    if let Some(border) = borders.get(index + 1) {
-        let border = lock(border);
-        for (points, first) in region.points.all_mut().into_iter().zip(border.first.all()) {
-            points[end..end + first.len()].copy_from_slice(first);
-        }
     }
 }
 

@@ -3,6 +3,7 @@
 mod energy;
 mod far_apart;
 mod limit;
+mod march;
 mod networks;
 mod order;
 mod same_bits;
