@@ -21,6 +21,29 @@ pub(crate) struct Field<'a> {
     pub dt: f32,
 }
 
+/// What a step makes of the forces on some points. All zero for one that no force can move.
+pub(super) struct Response {
+    /// dt/m, s/kg: the velocity that a force gives to a point.
+    per_force: Lanes,
+    /// g·dt, m/s: the velocity that gravity gives to it, along each axis.
+    fall: [Lanes; 3],
+}
+
+impl Response {
+    #[inline(always)]
+    pub fn new(inverse_mass: &Lanes, field: Field<'_>) -> Self {
+        let mut response = Self { per_force: [0.0; LANES], fall: [[0.0; LANES]; 3] };
+        let fall = (field.gravity * field.dt).to_array();
+        for lane in 0..LANES {
+            response.per_force[lane] = inverse_mass[lane] * field.dt;
+            for axis in 0..3 {
+                response.fall[axis][lane] = if inverse_mass[lane] > 0.0 { fall[axis] } else { 0.0 };
+            }
+        }
+        response
+    }
+}
+
 /// One component of some points' motion, with what rounding dropped.
 pub(super) struct Motion<'a> {
     pub position: &'a mut Lanes,
@@ -29,17 +52,16 @@ pub(super) struct Motion<'a> {
     pub velocity_low: &'a mut Lanes,
 }
 
-/// One component of a semi-implicit Euler move: v += a·dt, then x += v·dt, with a = f/m + g, keeping what rounding drops.
-/// A point that no force can move has 1/m = 0 and a = 0.
+/// One component, along an axis, of a semi-implicit Euler move: v += f·(dt/m) + g·dt, then x += v·dt, keeping what rounding
+/// drops.
 #[inline(always)]
-pub(super) fn advance(motion: Motion<'_>, force: &Lanes, inverse_mass: &Lanes, gravity: f32, dt: f32) {
+pub(super) fn advance(motion: Motion<'_>, force: &[Lanes; 3], response: &Response, axis: usize, dt: f32) {
+    let (force, fall, per_force) = (&force[axis], &response.fall[axis], &response.per_force);
     // Into arrays of its own: what may be the same memory as something else cannot be done in vectors.
     let zeros = [0.0; LANES];
     let (mut x, mut x_low, mut v, mut v_low) = (zeros, zeros, zeros, zeros);
     for lane in 0..LANES {
-        let pushed = force[lane] * inverse_mass[lane];
-        let acceleration = if inverse_mass[lane] > 0.0 { pushed + gravity } else { pushed };
-        let kick = acceleration * dt + motion.velocity_low[lane];
+        let kick = force[lane] * per_force[lane] + fall[lane] + motion.velocity_low[lane];
         let kick = if kick.to_bits() & NOTABLE_KICK != 0 { kick } else { 0.0 };
         let (speed, speed_low) = fast_two_sum(motion.velocity[lane], kick);
         v[lane] = if speed.to_bits() & NOTABLE_SPEED != 0 { speed } else { 0.0 };
@@ -51,6 +73,37 @@ pub(super) fn advance(motion: Motion<'_>, force: &Lanes, inverse_mass: &Lanes, g
     *motion.position_low = x_low;
     *motion.velocity = v;
     *motion.velocity_low = v_low;
+}
+
+/// Sums of what rounding dropped of positions, which tell whether one of them is not finite: what is dropped of such a one is
+/// not either, and of all others it is too little to sum up to infinity.
+pub(super) struct Doubt(Lanes);
+
+impl Doubt {
+    pub fn new() -> Self {
+        Self([0.0; LANES])
+    }
+
+    #[inline(always)]
+    pub fn look_at(&mut self, [x, y, z]: [&Lanes; 3]) {
+        for lane in 0..LANES {
+            self.0[lane] += x[lane] + y[lane] + z[lane];
+        }
+    }
+
+    /// Whether all positions are finite.
+    #[inline(always)]
+    pub fn is_cleared(mut self) -> bool {
+        // By halves: in a sum from lane to lane each would wait for the one before.
+        let mut half = LANES / 2;
+        while half > 0 {
+            for lane in 0..half {
+                self.0[lane] += self.0[lane + half];
+            }
+            half /= 2;
+        }
+        self.0[0].is_finite()
+    }
 }
 
 /// a + b in float32 and what the rounding dropped (Dekker's Fast2Sum): exact where |a| ≥ |b|. Where an increment b is the

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::aligned::Arrays;
-use super::integrate::{self, Field, Motion};
+use super::integrate::{self, Doubt, Field, Motion, Response};
 use super::laws::Laws;
 use super::level::Work;
 use super::packed::Force;
@@ -54,12 +54,11 @@ pub(super) struct Sweep<'a> {
 impl Work for Sweep<'_> {
     type Output = bool;
 
-    /// Sweeps. Returns whether every position is finite, and small enough for three of them to have a finite sum.
+    /// Sweeps. Returns whether every position is finite.
     #[inline(always)]
     fn run(mut self) -> bool {
         let mut springs = SpringLanes::new();
-        // 0·x is zero, unless x is infinite or NaN.
-        let mut doubt = [0.0; LANES];
+        let mut doubt = Doubt::new();
         for (count, block) in (self.region.first_block..self.region.blocks.end).enumerate() {
             let far = self.region.forces.begin_block(count);
             self.springs(block, far, &mut springs);
@@ -67,8 +66,7 @@ impl Work for Sweep<'_> {
                 self.points(block, far, &mut doubt);
             }
         }
-        // A sum, not a comparison of each: LLVM 22 fails to make WebAssembly vectors of that.
-        doubt.iter().sum::<f32>() == 0.0
+        doubt.is_cleared()
     }
 }
 
@@ -106,7 +104,7 @@ impl Sweep<'_> {
 
     /// The other forces on a block's points, and their move.
     #[inline(always)]
-    fn points(&mut self, block: usize, far_at: usize, doubt: &mut Lanes) {
+    fn points(&mut self, block: usize, far_at: usize, doubt: &mut Doubt) {
         let Self { region, plan, field, pushes, purpose, .. } = self;
         let first = region.index(block * BLOCK);
         let own = (block - region.blocks.start) * BLOCK;
@@ -151,8 +149,7 @@ impl Sweep<'_> {
                 Purpose::Move | Purpose::MoveAway => {
                     let [x, y, z, u, v, w] = &mut points;
                     let [x_low, y_low, z_low, u_low, v_low, w_low] = &mut low;
-                    let (m, dt) = (&inverse_mass[set], field.dt);
-                    let [gx, gy, gz] = field.gravity.to_array();
+                    let response = Response::new(&inverse_mass[set], *field);
                     let motion = |x, x_low, v, v_low| Motion {
                         position: x,
                         position_low: x_low,
@@ -160,15 +157,12 @@ impl Sweep<'_> {
                         velocity_low: v_low,
                     };
                     let along_x = motion(&mut x[set], &mut x_low[set], &mut u[set], &mut u_low[set]);
-                    integrate::advance(along_x, &force[0], m, gx, dt);
+                    integrate::advance(along_x, &force, &response, 0, field.dt);
                     let along_y = motion(&mut y[set], &mut y_low[set], &mut v[set], &mut v_low[set]);
-                    integrate::advance(along_y, &force[1], m, gy, dt);
+                    integrate::advance(along_y, &force, &response, 1, field.dt);
                     let along_z = motion(&mut z[set], &mut z_low[set], &mut w[set], &mut w_low[set]);
-                    integrate::advance(along_z, &force[2], m, gz, dt);
-                    for lane in 0..LANES {
-                        let sum = x[set][lane] + y[set][lane] + z[set][lane];
-                        doubt[lane] += 0.0 * sum;
-                    }
+                    integrate::advance(along_z, &force, &response, 2, field.dt);
+                    doubt.look_at([&x_low[set], &y_low[set], &z_low[set]]);
                 }
                 Purpose::Forces(into) => {
                     let into = &mut into[own + set * LANES..];

@@ -162,7 +162,7 @@ pub fn step<R: Real>(Parts { model, params, .. }: &Parts, order: &Order, state: 
         for axis in 0..3 {
             let [x, x_low, v, v_low] = motion.each_ref().map(|vector| R::of(vector[axis]));
             let fall = R::of(if inverse_mass > 0.0 { params.gravity[axis] } else { 0.0 });
-            let kick = (force[axis] * R::of(inverse_mass) + fall) * dt + v_low;
+            let kick = force[axis] * (R::of(inverse_mass) * dt) + fall * dt + v_low;
             let kick = if kick.get().abs() < 2f32.powi(-95) { R::of(0.0) } else { kick };
             let (v, v_low) = fast_two_sum(v, kick);
             let v = if v.get().abs() < 2f32.powi(-63) { R::of(0.0) } else { v };
