@@ -40,7 +40,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     }
     simulation.keep_ledger(args.plot.is_some());
     check_picture_options(args, &plan)?;
-    let options = Options { size: args.size, at: args.at };
+    let options = Options { size: args.size, at: args.at, ..Options::default() };
     let info = info(&name, &scene, &simulation, &plan);
     let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options)?;
     if !args.quiet {
@@ -167,6 +167,7 @@ fn info(name: &str, scene: &Scene, simulation: &Simulation, plan: &Plan) -> RunI
         model: simulation.model().clone(),
         params: simulation.params().clone(),
         frame_time: plan.dt * plan.steps_per_frame as f64,
+        frames: plan.frames + 1,
     }
 }
 

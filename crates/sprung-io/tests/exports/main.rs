@@ -3,6 +3,7 @@
 mod common;
 #[cfg(target_os = "linux")]
 mod full_disk;
+mod geometry;
 mod npz;
 #[cfg(unix)]
 mod places;
