@@ -2,8 +2,16 @@
 
 mod csv;
 pub mod geometry;
+mod mdd;
 mod npz;
+mod numbers;
+mod obj;
+mod pc2;
+mod ply;
+mod sequence;
 mod stored_zip;
+mod vtk;
+mod vtp;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -14,7 +22,12 @@ use sprung::{Model, Params, Result, Snapshot};
 
 pub use csv::CSV;
 pub use geometry::Geometry;
+pub use mdd::MDD;
 pub use npz::NPZ;
+pub use obj::OBJ;
+pub use pc2::PC2;
+pub use ply::PLY;
+pub use vtk::VTK;
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]
