@@ -52,6 +52,12 @@ const STAGES: &[Stage] = &[
         run: window_story::run_all,
     },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
+    Stage {
+        name: "exports",
+        about: "meshio, trimesh and VTK find every vertex where the command says it is",
+        run: stages::exports,
+    },
+    Stage { name: "blender", about: "so does Blender, which plays the caches", run: stages::blender },
     Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
     Stage {
         name: "licences",

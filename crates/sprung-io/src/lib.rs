@@ -5,5 +5,7 @@
 pub mod export;
 pub mod files;
 
-pub use export::{Export, Exporter, Frame, Options, Progress, RunInfo, Written};
+pub use export::{
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Up, Written,
+};
 pub use files::PartialFile;

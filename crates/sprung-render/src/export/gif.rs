@@ -7,25 +7,38 @@ use std::sync::Arc;
 
 use sprung::Result;
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
 
 use super::png::no_frames;
 use super::spool::Spool;
-use super::{go_on, picture_size};
+use super::{about, go_on, picture_size};
 use crate::image::Image;
 use crate::quantise::Palette;
 
 /// An animation for everywhere.
-pub const GIF: Exporter =
-    Exporter { ending: "gif", description: "an animation that plays in real time and loops", open };
+pub const GIF: Exporter = Exporter {
+    ending: "gif",
+    description: "an animation that plays in real time and loops",
+    heeds: &[Heeds::Size],
+    estimate,
+    open,
+};
+
+/// Width and height when nothing is said.
+const DEFAULT_SIZE: [u32; 2] = [800, 450];
 
 /// The shortest delay that browsers respect, hundredths of a second.
 const SHORTEST: u64 = 2;
 /// Fewer pictures than this, where there were more frames, would be no animation: then it plays in slow motion.
 const FEWEST: usize = 12;
 
+fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
+    let pictures = (run.frames as f64).min(100.0 / SHORTEST as f64 * run.frame_time * run.frames as f64);
+    Ok(about(options, DEFAULT_SIZE, 0.2 * pictures))
+}
+
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, [800, 450])?;
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
     Ok(Box::new(Animation { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
 }
 

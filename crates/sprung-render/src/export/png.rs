@@ -5,9 +5,9 @@ use std::path::Path;
 
 use sprung::{Code, Error, Params, Result, Snapshot};
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
 
-use super::{go_on, picture_size};
+use super::{about, go_on, picture_size};
 use crate::image::Image;
 use crate::motion::Motion;
 use crate::view::{Quality, SceneView};
@@ -16,11 +16,20 @@ use crate::view::{Quality, SceneView};
 pub const PNG: Exporter = Exporter {
     ending: "png",
     description: "a picture of the last frame, or of the one nearest to --at",
+    heeds: &[Heeds::Size, Heeds::At],
+    estimate,
     open,
 };
 
+/// Width and height when nothing is said.
+const DEFAULT_SIZE: [u32; 2] = [1280, 720];
+
+fn estimate(_: &RunInfo, options: &Options) -> Result<Estimate> {
+    Ok(about(options, DEFAULT_SIZE, 0.4))
+}
+
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, [1280, 720])?;
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
     let file = PartialFile::create(path)?;
     Ok(Box::new(Picture {
         file,
