@@ -4,6 +4,8 @@
 
 pub mod export;
 pub mod files;
+mod pack;
 
-pub use export::{Export, Exporter, Frame, Options, Progress, RunInfo, Written};
+pub use export::{Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
 pub use files::PartialFile;
+pub use pack::{Pack, Unpack};

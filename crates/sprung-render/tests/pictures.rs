@@ -31,7 +31,7 @@ fn write(path: &Path, motion: &Motion, moments: &[Snapshot], options: &Options) 
 fn compare(name: &str, motion: &Motion, at: f64) {
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(format!("{name}.png"));
     let drawn = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
-    let options = Options { size: Some([320, 180]), at: Some(at) };
+    let options = Options { size: Some([320, 180]), at: Some(at), ..Options::default() };
     write(&drawn, motion, &motion.moments, &options).expect("the picture can be drawn");
     if squares::updates() {
         std::fs::create_dir_all(stored.parent().expect("it has a folder")).expect("the folder can be made");
@@ -86,7 +86,7 @@ fn large_models_show_their_surfaces() {
 #[allow(clippy::print_stderr)]
 fn every_exporter_keeps_its_promises() {
     let motion = scenes::cloth(8, 6);
-    let options = Options { size: Some([64, 48]), at: None };
+    let options = Options { size: Some([64, 48]), ..Options::default() };
     for exporter in EXPORTERS {
         let folder = tempfile::tempdir().expect("a folder");
         let names = || {
@@ -133,7 +133,7 @@ fn every_exporter_keeps_its_promises() {
         assert_eq!(std::fs::metadata(&path).expect("it is there").len(), bytes);
         // A picture of no frame at all cannot be made.
         assert!(write(&path, &motion, &[], &options).is_err());
-        let tiny = Options { size: Some([3, 3]), at: None };
+        let tiny = Options { size: Some([3, 3]), ..Options::default() };
         assert!((exporter.open)(&path, &motion.info, &tiny).is_err());
     }
 }
@@ -143,7 +143,7 @@ fn a_gif_plays_back_what_was_drawn() {
     let motion = scenes::jelly(5, 15);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("out.gif");
-    let options = Options { size: Some([160, 90]), at: None };
+    let options = Options { size: Some([160, 90]), ..Options::default() };
     write(&path, &motion, &motion.moments, &options).expect("it can be written");
     let file = std::fs::File::open(&path).expect("it was written");
     let mut reader = gif::DecodeOptions::new().read_info(file).expect("it is a GIF");

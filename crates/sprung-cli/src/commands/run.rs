@@ -40,7 +40,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     }
     simulation.keep_ledger(args.plot.is_some());
     check_picture_options(args, &plan)?;
-    let options = Options { size: args.size, at: args.at };
+    let options = Options { size: args.size, at: args.at, ..Options::default() };
     let info = info(&name, &scene, &simulation, &plan);
     let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options)?;
     if !args.quiet {

@@ -5,12 +5,16 @@ use std::path::Path;
 
 use sprung::{Result, Snapshot};
 
-use super::{Export, Exporter, Frame, Options, Progress, RunInfo, Written};
+use super::{Export, Exporter, Frame, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, write_error};
 
 /// `.csv`: a table of positions and velocities. Numbers read back to the same float32, times to the same float64.
-pub const CSV: Exporter =
-    Exporter { ending: "csv", description: "a table: frame,time,point,x,y,z,vx,vy,vz (s, m, m/s)", open };
+pub const CSV: Exporter = Exporter {
+    ending: "csv",
+    description: "a table: frame,time,point,x,y,z,vx,vy,vz (s, m, m/s)",
+    open,
+    resume: Some(resume),
+};
 
 /// The first line.
 const HEADER: &str = "frame,time,point,x,y,z,vx,vy,vz\n";
@@ -27,6 +31,11 @@ fn open(path: &Path, _: &RunInfo, _: &Options) -> Result<Box<dyn Export>> {
     Ok(Box::new(CsvExport { file, frames: 0 }))
 }
 
+fn resume(path: &Path, _: &RunInfo, _: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let [file] = mark.files_of(path)?;
+    Ok(Box::new(CsvExport { file: PartialFile::resume(path, file)?, frames: mark.frames }))
+}
+
 impl Export for CsvExport {
     fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
         let written =
@@ -40,6 +49,11 @@ impl Export for CsvExport {
         let path = self.file.path().to_owned();
         self.file.roll_back().map_err(|error| write_error(&path, &error))?;
         Ok(Written { bytes: self.file.finish()?, path, frames: self.frames })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let file = self.file.mark("", 0).map_err(|error| write_error(self.file.path(), &error))?;
+        Ok(Mark { frames: self.frames, files: vec![file], memory: Vec::new() })
     }
 }
 

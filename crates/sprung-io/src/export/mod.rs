@@ -1,6 +1,7 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
 mod csv;
+mod mark;
 mod npz;
 mod stored_zip;
 
@@ -8,10 +9,12 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sprung::energy::Energy;
-use sprung::{Model, Params, Result, Snapshot};
+use sprung::{Code, Error, Model, Params, Result, Snapshot};
 
 pub use csv::CSV;
+pub use mark::{FileMark, Mark};
 pub use npz::NPZ;
 
 /// What an exporter may want to know about a run before its first frame.
@@ -29,13 +32,16 @@ pub struct RunInfo {
     pub frame_time: f64,
 }
 
-/// What a user may say about outputs.
-#[derive(Clone, Debug, Default)]
+/// What a user may say about outputs. A checkpoint keeps it as JSON: a field that it does not know yet has its default.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Options {
     /// Width and height of pictures, in pixels; each format has its own default.
     pub size: Option<[u32; 2]>,
     /// Simulated time of the picture in a `.png`, s; the last frame by default.
     pub at: Option<f64>,
+    /// The run takes checkpoints: what waits beside the output has a name, so that it is there after the run was killed.
+    pub resumable: bool,
 }
 
 /// One recorded frame.
@@ -81,6 +87,15 @@ pub trait Export {
     /// # Errors
     /// As [`frame`](Export::frame), and [`sprung::Code::Interrupted`] if `progress` broke off.
     fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written>;
+
+    /// Puts everything taken so far safely on the disk and says what it takes to go on from here with
+    /// [`Exporter::resume`]. From now on a file that is dropped unfinished stays: a checkpoint relies on it.
+    ///
+    /// # Errors
+    /// As [`frame`](Export::frame), and [`Code::Unsupported`] for a format that cannot go on where it was stopped.
+    fn mark(&mut self) -> Result<Mark> {
+        Err(Error::new(Code::Unsupported, "cannot be taken up again after the run was killed"))
+    }
 }
 
 /// Hears the share done, 0 to 1, and says whether to go on.
@@ -95,4 +110,13 @@ pub struct Exporter {
     pub description: &'static str,
     /// Begins a file.
     pub open: fn(&Path, &RunInfo, &Options) -> Result<Box<dyn Export>>,
+    /// Goes on with a file of a run that was killed: what came after the mark is cut off, and the rest is checked to be
+    /// what was marked. `None` for a format that cannot; a run with checkpoints then refuses it before it begins.
+    ///
+    /// What is written after that is, byte for byte, what would have been written without the interruption, even if that
+    /// came in the middle of [`Export::finish`].
+    pub resume: Option<Resume>,
 }
+
+/// See [`Exporter::resume`].
+pub type Resume = fn(&Path, &RunInfo, &Options, &Mark) -> Result<Box<dyn Export>>;

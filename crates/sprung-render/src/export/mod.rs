@@ -89,7 +89,8 @@ mod tests {
 
     #[test]
     fn sizes_are_checked() {
-        let size = |size| picture_size(Path::new("a.png"), &Options { size, at: None }, [640, 360]);
+        let size =
+            |size| picture_size(Path::new("a.png"), &Options { size, ..Options::default() }, [640, 360]);
         assert_eq!(size(None), Ok([640, 360]));
         assert_eq!(size(Some([16, 8192])), Ok([16, 8192]));
         assert!(size(Some([15, 100])).is_err());

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use sprung::{Code, Error, Params, Result, Snapshot};
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{
+    Export, Exporter, Frame, Mark, Options, Pack, PartialFile, Progress, RunInfo, Unpack, Written,
+};
 
 use super::{go_on, picture_size};
 use crate::image::Image;
@@ -17,10 +19,14 @@ pub const PNG: Exporter = Exporter {
     ending: "png",
     description: "a picture of the last frame, or of the one nearest to --at",
     open,
+    resume: Some(resume),
 };
 
+/// Width and height unless said otherwise, pixels.
+const SIZE: [u32; 2] = [1280, 720];
+
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, [1280, 720])?;
+    let size = picture_size(path, options, SIZE)?;
     let file = PartialFile::create(path)?;
     Ok(Box::new(Picture {
         file,
@@ -28,7 +34,28 @@ fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export
         at: options.at,
         motion: Motion::new(info, size),
         chosen: None,
+        frames: 0,
     }))
+}
+
+fn resume(path: &Path, info: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let size = picture_size(path, options, SIZE)?;
+    let [file] = mark.files_of(path)?;
+    let mut unpack = Unpack::new(&mark.memory);
+    let motion = Motion::unpack(info, size, &mut unpack)?;
+    let chosen = match unpack.bool()? {
+        true => Some((unpack.snapshot()?, unpack.params()?)),
+        false => None,
+    };
+    unpack.end()?;
+    let points = info.model.point_count();
+    if let Some((snapshot, params)) = &chosen
+        && (snapshot.positions.len() != points || params.validate(&info.model).is_err())
+    {
+        return Err(Mark::strange(path));
+    }
+    let file = PartialFile::resume(path, file)?;
+    Ok(Box::new(Picture { file, info: info.clone(), at: options.at, motion, chosen, frames: mark.frames }))
 }
 
 struct Picture {
@@ -37,6 +64,8 @@ struct Picture {
     at: Option<f64>,
     motion: Motion,
     chosen: Option<(Snapshot, Params)>,
+    /// Looked at so far.
+    frames: u64,
 }
 
 impl Export for Picture {
@@ -53,6 +82,7 @@ impl Export for Picture {
             }
             chosen => *chosen = Some((frame.snapshot.clone(), frame.params.clone())),
         }
+        self.frames += 1;
         Ok(())
     }
 
@@ -67,6 +97,17 @@ impl Export for Picture {
         write_png(&mut file, &image).map_err(|error| write_error(&path, &error))?;
         let bytes = file.finish()?;
         Ok(Written { path, bytes, frames: 1 })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let file = self.file.mark("", 0).map_err(|error| write_error(self.file.path(), &error))?;
+        let mut pack = Pack::new();
+        self.motion.pack(&mut pack);
+        pack.u8(self.chosen.is_some().into());
+        if let Some((snapshot, params)) = &self.chosen {
+            pack.snapshot(snapshot).params(params);
+        }
+        Ok(Mark { frames: self.frames, files: vec![file], memory: pack.into_bytes() })
     }
 }
 
