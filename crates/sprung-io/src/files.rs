@@ -290,19 +290,21 @@ enum Opening {
     Anew,
     /// To go on with: it must be there, and is as it was.
     AsItIs,
+    /// The same, to be read only.
+    ToRead,
 }
 
 /// Opens or creates a file, locked. `WouldBlock` if somebody else holds the lock, `AlreadyExists` if what has the name is
 /// no regular file: opening a pipe would wait for its reader, and a link leads to a file that is not ours.
 fn open_locked(path: &Path, opening: Opening) -> io::Result<File> {
     let mut options = OpenOptions::new();
-    options.read(true).write(true);
+    options.read(true).write(opening != Opening::ToRead);
     loop {
         let opened = match path.symlink_metadata() {
             // Not truncated before it is ours: it may be another run's.
             Ok(found) if found.is_file() => options.open(path),
             Ok(_) => return Err(io::ErrorKind::AlreadyExists.into()),
-            Err(error) if opening == Opening::AsItIs => return Err(error),
+            Err(error) if opening != Opening::Anew => return Err(error),
             Err(_) => options.clone().create_new(true).open(path),
         };
         let file = match opened {
@@ -368,15 +370,7 @@ pub fn spool() -> io::Result<File> {
 /// # Errors
 /// [`Code::Unreadable`] or [`Code::TooLarge`], naming the file.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let failed = |error: io::Error| {
-        let reason = match error.kind() {
-            io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            io::ErrorKind::PermissionDenied => "cannot be read: permission denied".to_owned(),
-            io::ErrorKind::IsADirectory => "is a folder, and must be a file".to_owned(),
-            _ => format!("cannot be read: {error}"),
-        };
-        Error::new(Code::Unreadable, reason).in_file(path.display().to_string())
-    };
+    let failed = |error: io::Error| read_error(path, &error);
     let file = File::open(path).map_err(failed)?;
     if file.metadata().map_err(failed)?.is_dir() {
         return Err(failed(io::ErrorKind::IsADirectory.into()));
@@ -396,12 +390,50 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`read`].
 pub fn read_ordinary(path: &Path, most: u64) -> Result<Vec<u8>> {
+    check_ordinary(path)?;
+    read(path, most)
+}
+
+/// Opens an ordinary file to read it.
+///
+/// # Errors
+/// [`Code::Unreadable`], naming the file.
+pub fn open_ordinary(path: &Path) -> Result<File> {
+    check_ordinary(path)?;
+    let file = File::open(path).map_err(|error| read_error(path, &error))?;
+    match file.metadata() {
+        Ok(found) if found.is_dir() => Err(read_error(path, &io::ErrorKind::IsADirectory.into())),
+        Ok(_) => Ok(file),
+        Err(error) => Err(read_error(path, &error)),
+    }
+}
+
+fn check_ordinary(path: &Path) -> Result<()> {
     let is_odd = std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir());
     if is_odd {
         let error = Error::new(Code::Unreadable, "is a pipe or a device, and must be an ordinary file");
         return Err(error.in_file(path.display().to_string()));
     }
-    read(path, most)
+    Ok(())
+}
+
+/// Opens a checkpoint and keeps other runs from it.
+pub(crate) fn hold(path: &Path) -> Result<File> {
+    open_locked(&target_of(path)?, Opening::ToRead).map_err(|error| match error.kind() {
+        io::ErrorKind::WouldBlock => crate::checkpoint::taken(path),
+        _ => read_error(path, &error),
+    })
+}
+
+/// The sentence for a file that cannot be read.
+pub fn read_error(path: &Path, error: &io::Error) -> Error {
+    let reason = match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "cannot be read: permission denied".to_owned(),
+        io::ErrorKind::IsADirectory => "is a folder, and must be a file".to_owned(),
+        _ => format!("cannot be read: {error}"),
+    };
+    Error::new(Code::Unreadable, reason).in_file(path.display().to_string())
 }
 
 /// The sentence for a file that cannot be written.

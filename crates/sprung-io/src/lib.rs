@@ -1,7 +1,8 @@
-//! Files: motion out, and the one place that knows paths.
+//! Files: motion out, checkpoints, and the one place that knows paths.
 //!
 //! Exporters write to anything that is [`std::io::Write`] + [`std::io::Seek`]; [`files`] alone knows paths.
 
+pub mod checkpoint;
 pub mod export;
 pub mod files;
 mod pack;

@@ -284,9 +284,17 @@ mod tests {
             let mut read = Unpack::new(&bytes[..length]);
             let mut all = || -> Result<()> {
                 read.u8()?;
-                (read.u32()?, read.u64()?, read.f32()?, read.f64()?);
-                (read.text()?, read.bytes()?, read.vec3()?);
-                (read.f32s()?, read.f64s()?, read.vec3s()?, read.bools()?);
+                read.u32()?;
+                read.u64()?;
+                read.f32()?;
+                read.f64()?;
+                read.text()?;
+                read.bytes()?;
+                read.vec3()?;
+                read.f32s()?;
+                read.f64s()?;
+                read.vec3s()?;
+                read.bools()?;
                 Ok(())
             };
             assert!(all().is_err(), "{length} bytes");
