@@ -1,10 +1,12 @@
 //! The arguments: one definition for parsing, help, completions and the man page.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::RangedU64ValueParser;
-use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use sprung_io::export::geometry::SCALE_RANGE;
 use sprung_render::export::{EXPORTERS, SIZE_RANGE};
 
 /// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
@@ -95,11 +97,14 @@ pub struct ShowArgs {
 }
 
 /// Arguments of `run`.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct RunArgs {
-    /// The scene.
-    #[command(flatten)]
-    pub scene: SceneArgs,
+    /// A built-in scene's name, a scene file, or a checkpoint whose state is to be the first frame
+    #[arg(required_unless_present = "resume")]
+    pub scene: Option<String>,
+    /// Change a value of the scene, such as dt=0.005, gravity=[0,-1.62,0] or body.jelly.springs.stiffness=500
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     /// A file to write; its ending chooses the format
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
@@ -125,12 +130,87 @@ pub struct RunArgs {
     /// Width and height of pictures in pixels, such as 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
+    /// Write no frame before this one; the run starts at 0 all the same
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    pub from: Option<u64>,
+    /// What leaves of the geometry.
+    #[command(flatten)]
+    pub geometry: GeometryArgs,
+    /// Say what would be simulated and written, and do neither
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Save all it takes to go on with the run, its outputs too, into this file every now and then
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often: after so much time on the clock, such as 30s, 5m or 1h, or after so many frames, such as 100 [default: 1m]
+    #[arg(long, value_name = "TIME|N", allow_negative_numbers = true, value_parser = every)]
+    pub every: Option<Every>,
+    /// Complete the run that this checkpoint is of, after it was killed: to the same bytes as if it had not been.
+    /// --seconds or --frames make it longer or shorter
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "set", "output", "fps", "settle", "plot", "at", "size", "from", "up", "scale", "springs", "body", "points", "dry_run", "checkpoint"])]
+    pub resume: Option<PathBuf>,
     /// Worker threads, the most that are used; the result is the same for any number [default: one for each processor]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
     /// No progress bar and no summary
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl RunArgs {
+    /// The scene and what is changed of it.
+    pub fn scene(&self) -> SceneArgs {
+        SceneArgs { scene: self.scene.clone().unwrap_or_default(), set: self.set.clone() }
+    }
+}
+
+/// How often a checkpoint is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Every {
+    /// After so many frames.
+    Frames(u64),
+    /// After so much time, as soon as a frame is whole.
+    Time(Duration),
+}
+
+/// What of the geometry is exported, and how.
+#[derive(Clone, Debug, Default, Args)]
+pub struct GeometryArgs {
+    /// The axis that points up in exported geometry: z turns (x, y, z) into (x, -z, y) [default: y, as in scenes]
+    #[arg(long, value_name = "AXIS", ignore_case = true)]
+    pub up: Option<Axis>,
+    /// Units of exported geometry per metre, such as 100 for centimetres [default: 1]
+    #[arg(long, value_name = "UNITS", allow_negative_numbers = true, value_parser = scale)]
+    pub scale: Option<f64>,
+    /// What becomes of springs in exported geometry [default: lines in a .pvd, none elsewhere]
+    #[arg(long, value_name = "STYLE")]
+    pub springs: Option<SpringStyle>,
+    /// Export this body alone; may be given several times [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub body: Vec<String>,
+    /// Export points alone, without surfaces
+    #[arg(long)]
+    pub points: bool,
+}
+
+/// The axis that points up.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Axis {
+    /// As in scenes, Houdini, Maya and three.js
+    Y,
+    /// As in Blender and Unreal
+    Z,
+}
+
+/// What becomes of springs.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum SpringStyle {
+    /// Left out
+    None,
+    /// Lines between points
+    Lines,
+    /// Six-sided tubes, to be rendered; lines in a .pvd
+    Tubes,
 }
 
 /// Arguments of `bench`.
@@ -165,6 +245,31 @@ fn positive(text: &str) -> Result<f64, String> {
     let allowed = 1e-6..=1e9;
     let value = finite(text)?;
     if allowed.contains(&value) { Ok(value) } else { Err("it must be from 1e-6 to 1e9".to_owned()) }
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    let (low, high) = (SCALE_RANGE.start(), SCALE_RANGE.end());
+    if SCALE_RANGE.contains(&value) { Ok(value) } else { Err(format!("it must be from {low} to {high}")) }
+}
+
+/// `30s`, `5m`, `1h`, or a number of frames.
+pub fn every(text: &str) -> Result<Every, String> {
+    let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let told = "it must be a time such as 30s, 5m or 1h, or a number of frames such as 100";
+    for (unit, seconds) in units {
+        let Some(number) = text.strip_suffix(unit) else { continue };
+        let time = finite(number).map_err(|_| told.to_owned())? * seconds;
+        if !(0.0..=1e7).contains(&time) {
+            return Err("it must be at most 10,000,000 s".to_owned());
+        }
+        return Ok(Every::Time(Duration::from_secs_f64(time)));
+    }
+    match text.parse() {
+        Ok(frames @ 1..=100_000_000) => Ok(Every::Frames(frames)),
+        Ok(_) => Err("it must be from 1 to 100,000,000 frames".to_owned()),
+        Err(_) => Err(told.to_owned()),
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

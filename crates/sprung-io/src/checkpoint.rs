@@ -74,10 +74,10 @@ pub struct Plan {
     pub steps_per_frame: u64,
     /// The number of the last frame.
     pub last_frame: u64,
-    /// Whole frames recorded so far: the number of the next.
+    /// Whole frames recorded so far, those before the first that is written too: the number of the next.
     pub recorded: u64,
-    /// Steps it was at when the first frame was recorded.
-    pub first_step: u64,
+    /// The first frame that is written.
+    pub from: u64,
     /// How often a checkpoint was to be taken, as it was typed.
     pub every: String,
     /// When the recording began, s since 1970.

@@ -7,6 +7,9 @@ pub mod export;
 pub mod files;
 mod pack;
 
-pub use export::{Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
+pub use export::{
+    Estimate, Export, Exporter, FileMark, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs,
+    Up, Written,
+};
 pub use files::PartialFile;
 pub use pack::{Pack, Unpack};

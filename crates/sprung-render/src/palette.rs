@@ -1,6 +1,8 @@
 //! The studio's colours and lights, in the light and in the dark: of the graphics card's pictures, of the software ones (the
 //! light studio's colours) and of what the window writes over its scene.
 
+use sprung_io::export::geometry::{BODY_COLOURS, SPRING_COLOUR};
+
 use crate::appearance::Theme;
 
 /// Colours, sRGB as `0xRRGGBB`, and lights, linear.
@@ -60,12 +62,12 @@ pub static LIGHT: Palette = Palette {
     sun: [0.66, 0.63, 0.58],
     backdrop: ([0xf6_f8_fa, 0xd8_df_e6], 0.03),
     haze: (0xe4_ea_f0, 0.26),
-    balls: [0x12_7a_8a, 0x76_4d_a6, 0x4c_8a_26, 0xb8_55_7c, 0x8c_6c_2c, 0x34_63_ae],
+    balls: BODY_COLOURS,
     fixed: 0x1f_24_2b,
     cloth_pale: [0xe8_d4_b4, 0xa4_c4_d2],
     cloth_rich: [0x1f_8f_94, 0xec_9a_50],
     skin: [0x2a_a3_90, 0x18_58_4e],
-    wire: 0x8b_95_a1,
+    wire: SPRING_COLOUR,
     edge: 0x3d_4a_58,
     sheet: (0xfb_fc_fd, 0.42),
     grid: (0x4a_58_68, 0.36),

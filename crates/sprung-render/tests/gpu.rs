@@ -41,6 +41,7 @@ fn still(points: &[Vec3], springs: &[[usize; 2]], triangles: Vec<[u32; 3]>) -> M
         model: Arc::new(model),
         params,
         frame_time: 0.1,
+        frames: 1,
     };
     Motion { info, moments: vec![Snapshot { step: 0, time: 0.0, positions, velocities }] }
 }

@@ -29,6 +29,7 @@ fn info() -> RunInfo {
         model: simulation.model().clone(),
         params: simulation.params().clone(),
         frame_time: 0.07,
+        frames: FRAMES,
     }
 }
 

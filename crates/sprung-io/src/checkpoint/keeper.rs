@@ -104,6 +104,10 @@ impl Keeper {
     /// # Errors
     /// [`Code::Unwritable`]; the one before is still there then.
     pub fn write(&mut self, saved: &Saved) -> Result<u64> {
+        if self.held.is_none() && self.path.exists() {
+            // It was not there when this run began.
+            self.held = Some(files::hold(&self.path)?);
+        }
         let mut file = PartialFile::create(&self.path)?;
         saved.write_to(&mut file).map_err(|error| write_error(&self.path, &error))?;
         let file = file.finish_locked()?;

@@ -5,19 +5,24 @@ use std::path::Path;
 
 use sprung::{Result, Snapshot};
 
-use super::{Export, Exporter, Frame, Mark, Options, Progress, RunInfo, Written};
+use super::{Estimate, Export, Exporter, Frame, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, write_error};
 
 /// `.csv`: a table of positions and velocities. Numbers read back to the same float32, times to the same float64.
 pub const CSV: Exporter = Exporter {
     ending: "csv",
     description: "a table: frame,time,point,x,y,z,vx,vy,vz (s, m, m/s)",
+    heeds: &[],
+    estimate,
     open,
     resume: Some(resume),
 };
 
 /// The first line.
 const HEADER: &str = "frame,time,point,x,y,z,vx,vy,vz\n";
+
+/// Length of a row: six numbers of nine digits or less, and what is before them.
+const ROW_BYTES: u64 = 78;
 
 struct CsvExport {
     file: PartialFile,
@@ -29,6 +34,10 @@ fn open(path: &Path, _: &RunInfo, _: &Options) -> Result<Box<dyn Export>> {
     let begun = file.write_all(HEADER.as_bytes()).and_then(|()| file.commit());
     begun.map_err(|error| write_error(path, &error))?;
     Ok(Box::new(CsvExport { file, frames: 0 }))
+}
+
+fn estimate(run: &RunInfo, _: &Options) -> Result<Estimate> {
+    Ok(Estimate::About(HEADER.len() as u64 + run.frames * run.model.point_count() as u64 * ROW_BYTES))
 }
 
 fn resume(path: &Path, _: &RunInfo, _: &Options, mark: &Mark) -> Result<Box<dyn Export>> {

@@ -1,9 +1,18 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
 mod csv;
+pub mod geometry;
 mod mark;
+mod mdd;
 mod npz;
+mod numbers;
+mod obj;
+mod pc2;
+mod ply;
+mod sequence;
 mod stored_zip;
+mod vtk;
+mod vtp;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -14,8 +23,14 @@ use sprung::energy::Energy;
 use sprung::{Code, Error, Model, Params, Result, Snapshot};
 
 pub use csv::CSV;
+pub use geometry::Geometry;
 pub use mark::{FileMark, Mark};
+pub use mdd::MDD;
 pub use npz::NPZ;
+pub use obj::OBJ;
+pub use pc2::PC2;
+pub use ply::PLY;
+pub use vtk::VTK;
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]
@@ -30,18 +45,97 @@ pub struct RunInfo {
     pub params: Params,
     /// Simulated time from one frame to the next, s.
     pub frame_time: f64,
+    /// How many frames are planned, from the first that is written: a run that ends early gives fewer, none gives more.
+    pub frames: u64,
 }
 
 /// What a user may say about outputs. A checkpoint keeps it as JSON: a field that it does not know yet has its default.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Options {
     /// Width and height of pictures, in pixels; each format has its own default.
     pub size: Option<[u32; 2]>,
     /// Simulated time of the picture in a `.png`, s; the last frame by default.
     pub at: Option<f64>,
+    /// The axis that points up in exported geometry.
+    pub up: Up,
+    /// Units of exported geometry per metre: 100 for centimetres.
+    pub scale: f64,
+    /// What becomes of springs; each format has its own default.
+    pub springs: Option<Springs>,
+    /// The bodies that are exported, by name; all by default.
+    pub bodies: Option<Vec<String>>,
+    /// Whether points alone are exported, and no surfaces.
+    pub points: bool,
     /// The run takes checkpoints: what waits beside the output has a name, so that it is there after the run was killed.
     pub resumable: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            size: None,
+            at: None,
+            up: Up::Y,
+            scale: 1.0,
+            springs: None,
+            bodies: None,
+            points: false,
+            resumable: false,
+        }
+    }
+}
+
+/// The axis that points up in a file. Scenes have +Y up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Up {
+    /// As in scenes, Maya, Houdini and glTF.
+    #[default]
+    Y,
+    /// As in Blender, Unreal and most of CAD: (x, y, z) is written as (x, −z, y).
+    Z,
+}
+
+/// What becomes of springs in exported geometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Springs {
+    /// They are left out.
+    None,
+    /// Lines between points, or curves.
+    Lines,
+    /// Tubes that can be rendered.
+    Tubes,
+}
+
+/// Options that formats may take account of, by the names of their fields in [`Options`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heeds {
+    /// [`Options::size`].
+    Size,
+    /// [`Options::at`].
+    At,
+    /// [`Options::up`], [`Options::scale`], [`Options::bodies`] and [`Options::points`].
+    Geometry,
+    /// [`Options::springs`].
+    Springs,
+}
+
+/// How many bytes an output will take, if the run gets to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimate {
+    /// So many, to the byte.
+    Exact(u64),
+    /// About so many.
+    About(u64),
+}
+
+impl Estimate {
+    /// The number of bytes.
+    pub fn bytes(self) -> u64 {
+        match self {
+            Self::Exact(bytes) | Self::About(bytes) => bytes,
+        }
+    }
 }
 
 /// One recorded frame.
@@ -108,6 +202,11 @@ pub struct Exporter {
     pub ending: &'static str,
     /// What the file holds, in a phrase.
     pub description: &'static str,
+    /// The options it takes account of.
+    pub heeds: &'static [Heeds],
+    /// How many bytes it will take for [`RunInfo::frames`] frames. It writes nothing, and refuses what `open` refuses of
+    /// run and options.
+    pub estimate: fn(&RunInfo, &Options) -> Result<Estimate>,
     /// Begins a file.
     pub open: fn(&Path, &RunInfo, &Options) -> Result<Box<dyn Export>>,
     /// Goes on with a file of a run that was killed: what came after the mark is cut off, and the rest is checked to be

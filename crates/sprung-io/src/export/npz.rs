@@ -19,14 +19,16 @@ use std::path::Path;
 use crc32fast::Hasher;
 use sprung::{Result, Vec3};
 
-use super::stored_zip::{StoredZip, header_bytes};
-use super::{Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
+use super::stored_zip::{self, StoredZip, header_bytes};
+use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, spool_beside, write_error};
 
 /// `.npz`: arrays `time`, `positions` and `velocities` (frames, points, 3), `springs` and `mass`.
 pub const NPZ: Exporter = Exporter {
     ending: "npz",
     description: "NumPy arrays: time, positions, velocities, springs, mass (s, m, m/s, -, kg)",
+    heeds: &[],
+    estimate,
     open,
     resume: Some(resume),
 };
@@ -124,6 +126,20 @@ fn head_bytes(run: &RunInfo) -> u64 {
         [("springs.npy", 8 * run.model.spring_count()), ("mass.npy", 4 * run.params.point_mass.len())];
     let before = arrays.iter().map(|(name, bytes)| header_bytes(name) + (NPY_HEADER_BYTES + bytes) as u64);
     before.sum::<u64>() + header_bytes("positions.npy") + NPY_HEADER_BYTES as u64
+}
+
+fn estimate(run: &RunInfo, _: &Options) -> Result<Estimate> {
+    let (frames, points) = (run.frames, run.model.point_count() as u64);
+    let arrays = [
+        ("springs.npy", 8 * run.model.spring_count() as u64),
+        ("mass.npy", 4 * points),
+        ("positions.npy", 12 * points * frames),
+        ("time.npy", 8 * frames),
+        ("velocities.npy", 12 * points * frames),
+    ];
+    Ok(Estimate::Exact(stored_zip::size(
+        &arrays.map(|(name, bytes)| (name, NPY_HEADER_BYTES as u64 + bytes)),
+    )))
 }
 
 /// Sets room aside, writes what is known at the start, and begins the positions.

@@ -79,6 +79,18 @@ impl<W: Write + Seek> StoredZip<W> {
     }
 }
 
+/// The size of an archive with entries of these names and lengths.
+pub fn size(entries: &[(&'static str, u64)]) -> u64 {
+    let (mut offset, mut directory) = (0, 0);
+    for &(name, bytes) in entries {
+        let entry = Entry { name, offset, bytes, crc32: 0 };
+        offset += entry.local_header().len() as u64 + bytes;
+        directory += entry.directory_record().len() as u64;
+    }
+    let end = offset + directory;
+    end + end_of_directory(entries.len() as u16, offset, end).len() as u64
+}
+
 impl Entry {
     /// §4.3.7. Always with the 64-bit extra field: the size is not known when the header is first written.
     fn local_header(&self) -> Vec<u8> {

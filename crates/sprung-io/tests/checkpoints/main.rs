@@ -54,7 +54,7 @@ fn small() -> Saved {
             steps_per_frame: 2,
             last_frame: 100,
             recorded: 4,
-            first_step: 0,
+            from: 1,
             every: "10s".into(),
             begun: 1_700_000_000,
             ended: None,

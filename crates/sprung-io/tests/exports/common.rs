@@ -26,6 +26,7 @@ pub fn run_of(points: usize) -> RunInfo {
         model: Arc::new(model),
         params,
         frame_time: 0.07,
+        frames: 1000,
     }
 }
 

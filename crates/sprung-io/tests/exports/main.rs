@@ -1,9 +1,12 @@
 //! Exports read back, and what is left behind when they end early.
 
+mod caches;
 mod common;
 #[cfg(target_os = "linux")]
 mod full_disk;
+mod geometry;
 mod npz;
 #[cfg(unix)]
 mod places;
+mod sequences;
 mod tables;

@@ -7,11 +7,13 @@ use std::sync::Arc;
 
 use sprung::Result;
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Mark, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{
+    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, PartialFile, Progress, RunInfo, Written,
+};
 
 use super::png::no_frames;
 use super::spool::Spool;
-use super::{go_on, picture_size};
+use super::{about, go_on, picture_size};
 use crate::image::Image;
 use crate::quantise::Palette;
 
@@ -19,26 +21,33 @@ use crate::quantise::Palette;
 pub const GIF: Exporter = Exporter {
     ending: "gif",
     description: "an animation that plays in real time and loops",
+    heeds: &[Heeds::Size],
+    estimate,
     open,
     resume: Some(resume),
 };
 
 /// Width and height unless said otherwise, pixels.
-const SIZE: [u32; 2] = [800, 450];
+const DEFAULT_SIZE: [u32; 2] = [800, 450];
 /// The shortest delay that browsers respect, hundredths of a second.
 const SHORTEST: u64 = 2;
 /// Fewer pictures than this, where there were more frames, would be no animation: then it plays in slow motion.
 const FEWEST: usize = 12;
 
+fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
+    let pictures = (run.frames as f64).min(100.0 / SHORTEST as f64 * run.frame_time * run.frames as f64);
+    Ok(about(options, DEFAULT_SIZE, 0.2 * pictures))
+}
+
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, SIZE)?;
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
     let file = PartialFile::create(path)?;
     Ok(Box::new(Animation { file, spool: Spool::new(path, info, size, options.resumable)?, size }))
 }
 
 /// Of the animation itself nothing is written before all frames are there, so there is nothing to go on with but them.
 fn resume(path: &Path, info: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, SIZE)?;
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
     let [file, frames] = mark.files_of(path)?;
     let file = PartialFile::resume(path, file)?;
     let spool = Spool::resume(path, info, size, frames, &mark.memory)?;

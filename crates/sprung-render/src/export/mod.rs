@@ -10,8 +10,8 @@ use std::ops::{ControlFlow, RangeInclusive};
 use std::path::Path;
 
 use sprung::{Code, Error, Result};
-use sprung_io::export::{CSV, NPZ};
-use sprung_io::{Exporter, Options};
+use sprung_io::export::{CSV, MDD, NPZ, OBJ, PC2, PLY, VTK};
+use sprung_io::{Estimate, Exporter, Options};
 
 pub use gif::GIF;
 pub use mp4::MP4;
@@ -19,7 +19,7 @@ pub use png::{PNG, write_png};
 pub use recording::{Progressed, Recording, Writing};
 
 /// All exporters, chosen by the ending of a file's name.
-pub static EXPORTERS: &[Exporter] = &[CSV, NPZ, PNG, GIF, MP4];
+pub static EXPORTERS: &[Exporter] = &[CSV, NPZ, PC2, MDD, OBJ, PLY, VTK, PNG, GIF, MP4];
 
 /// Allowed widths and heights of pictures, pixels.
 pub const SIZE_RANGE: RangeInclusive<u32> = 16..=8192;
@@ -53,6 +53,12 @@ fn picture_size(path: &Path, options: &Options, default: [u32; 2]) -> Result<[u3
     let (low, high) = (SIZE_RANGE.start(), SIZE_RANGE.end());
     let sentence = format!("is {width}x{height}, and width and height must be from {low} to {high} pixels");
     Err(Error::new(Code::OutOfRange, sentence).at_field("size").in_file(path.display().to_string()))
+}
+
+/// About how many bytes pictures take, at so many bytes for each pixel.
+fn about(options: &Options, default: [u32; 2], bytes_per_pixel: f64) -> Estimate {
+    let [width, height] = options.size.unwrap_or(default).map(f64::from);
+    Estimate::About((width * height * bytes_per_pixel) as u64)
 }
 
 /// The answer to progress as a result: an error where the drawing of `path` is broken off.

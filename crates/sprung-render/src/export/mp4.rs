@@ -7,16 +7,25 @@ use std::time::{Duration, Instant};
 
 use sprung::{Code, Error, Result};
 use sprung_io::files::write_error;
-use sprung_io::{Export, Exporter, Frame, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
 
 use super::png::no_frames;
 use super::spool::Spool;
-use super::{go_on, picture_size};
+use super::{about, go_on, picture_size};
 
 /// A film.
 /// What ffmpeg has been given cannot be taken back, so a film is not resumed.
-pub const MP4: Exporter =
-    Exporter { ending: "mp4", description: "a film (needs ffmpeg)", open, resume: None };
+pub const MP4: Exporter = Exporter {
+    ending: "mp4",
+    description: "a film (needs ffmpeg)",
+    heeds: &[Heeds::Size],
+    estimate,
+    open,
+    resume: None,
+};
+
+/// Width and height when nothing is said.
+const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 
 /// How long ffmpeg may take to tell its version.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -24,11 +33,15 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Frames per second that players cope with.
 const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
 
+fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
+    Ok(about(options, DEFAULT_SIZE, 0.04 * run.frames as f64))
+}
+
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     // Asked before the simulation, which may take long, and not after it.
     check_ffmpeg(path)?;
     // The colour of two by two pixels is stored together, so both sides must be even.
-    let size = picture_size(path, options, [1280, 720])?.map(|side| side & !1);
+    let size = picture_size(path, options, DEFAULT_SIZE)?.map(|side| side & !1);
     Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info, size, false)?, size }))
 }
 

@@ -6,10 +6,11 @@ use std::path::Path;
 use sprung::{Code, Error, Params, Result, Snapshot};
 use sprung_io::files::write_error;
 use sprung_io::{
-    Export, Exporter, Frame, Mark, Options, Pack, PartialFile, Progress, RunInfo, Unpack, Written,
+    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, Pack, PartialFile, Progress, RunInfo, Unpack,
+    Written,
 };
 
-use super::{go_on, picture_size};
+use super::{about, go_on, picture_size};
 use crate::image::Image;
 use crate::motion::Motion;
 use crate::view::{Quality, SceneView};
@@ -18,15 +19,21 @@ use crate::view::{Quality, SceneView};
 pub const PNG: Exporter = Exporter {
     ending: "png",
     description: "a picture of the last frame, or of the one nearest to --at",
+    heeds: &[Heeds::Size, Heeds::At],
+    estimate,
     open,
     resume: Some(resume),
 };
 
-/// Width and height unless said otherwise, pixels.
-const SIZE: [u32; 2] = [1280, 720];
+/// Width and height when nothing is said.
+const DEFAULT_SIZE: [u32; 2] = [1280, 720];
+
+fn estimate(_: &RunInfo, options: &Options) -> Result<Estimate> {
+    Ok(about(options, DEFAULT_SIZE, 0.4))
+}
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, SIZE)?;
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
     let file = PartialFile::create(path)?;
     Ok(Box::new(Picture {
         file,
@@ -39,7 +46,7 @@ fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export
 }
 
 fn resume(path: &Path, info: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
-    let size = picture_size(path, options, SIZE)?;
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
     let [file] = mark.files_of(path)?;
     let mut unpack = Unpack::new(&mark.memory);
     let motion = Motion::unpack(info, size, &mut unpack)?;

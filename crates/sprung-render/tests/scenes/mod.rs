@@ -35,6 +35,7 @@ fn motion(
         model: Arc::new(model),
         params,
         frame_time,
+        frames: moments as u64,
     };
     Motion { info, moments: (0..moments).map(moment).collect() }
 }

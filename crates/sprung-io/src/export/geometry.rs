@@ -1,0 +1,325 @@
+//! A frame becomes what is exported: vertices, triangles and springs of the chosen bodies, in the chosen axes and units.
+//!
+//! ```text
+//! let mut geometry = Geometry::new(run, options, Springs::None)?;   // what stays the same
+//! geometry.take(frame);                                             // where it is now
+//! for part in geometry.parts() {
+//!     write(&part.name, &geometry.positions()[part.vertices.clone()], &part.triangles);
+//! }
+//! ```
+//!
+//! All vertices lie in one list, part after part. The order is the bodies', and within a body its points', and it never
+//! changes: vertex 7 of one frame, format or version is vertex 7 of every other that was written with the same options.
+
+use std::ops::{Range, RangeInclusive};
+
+use sprung::{Code, Error, Model, Result, SurfaceKind, Vec3};
+
+use super::{Frame, Options, RunInfo, Springs, Up};
+
+/// Allowed scales, units per metre.
+pub const SCALE_RANGE: RangeInclusive<f64> = 1e-6..=1e6;
+
+/// Display colours of bodies, in turn, sRGB as `0xRRGGBB`: in exported files, and of points in pictures.
+pub const BODY_COLOURS: [u32; 6] = [0x12_7a_8a, 0x76_4d_a6, 0x4c_8a_26, 0xb8_55_7c, 0x8c_6c_2c, 0x34_63_ae];
+/// Display colour of springs.
+pub const SPRING_COLOUR: u32 = 0x8b_95_a1;
+
+/// A tube's cross-section, a hexagon of radius one.
+const TUBE_RING: [[f32; 2]; 6] =
+    [[1.0, 0.0], [0.5, ROOT_3_4], [-0.5, ROOT_3_4], [-1.0, 0.0], [-0.5, -ROOT_3_4], [0.5, -ROOT_3_4]];
+/// Its corners.
+const TUBE_SIDES: usize = TUBE_RING.len();
+/// √3/2.
+const ROOT_3_4: f32 = 0.866_025_4;
+/// A tube's radius as a share of the median rest length: thick enough to be seen, and two do not touch.
+const TUBE_RADIUS: f32 = 0.03;
+
+/// One thing that is exported: a body, or all springs as tubes.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The body's name, or `springs`.
+    pub name: String,
+    /// The body, as an index into [`Model::bodies`]; none for tubes.
+    pub body: Option<usize>,
+    /// Its vertices, as indices into [`Geometry::positions`].
+    pub vertices: Range<usize>,
+    /// Corners, counted from the part's first vertex, counter-clockwise seen from the front; none for points.
+    pub triangles: Vec<[u32; 3]>,
+    /// Whether the triangles enclose something, and need to be seen from outside only.
+    pub is_closed: bool,
+    /// Display colour, sRGB.
+    pub colour: [u8; 3],
+}
+
+/// A spring as a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// The spring, as an index into the model's.
+    pub spring: usize,
+    /// Its ends, as indices into [`Geometry::positions`].
+    pub ends: [u32; 2],
+}
+
+/// What is exported of a run, and where it is at one frame.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    parts: Vec<Part>,
+    lines: Vec<Line>,
+    /// Where the vertices come from, in order.
+    sources: Vec<Range<usize>>,
+    /// Springs drawn as tubes: their ends as points of the model, and the radius, m.
+    tubes: Option<(Vec<[u32; 2]>, f32)>,
+    place: Placement,
+    positions: Vec<Vec3>,
+    velocities: Vec<Vec3>,
+}
+
+/// Axes and unit of the file.
+#[derive(Clone, Copy, Debug)]
+struct Placement {
+    up: Up,
+    scale: f32,
+}
+
+impl Placement {
+    /// A direction in the file's axes.
+    fn turn(self, v: Vec3) -> Vec3 {
+        match self.up {
+            Up::Y => v,
+            Up::Z => Vec3::new(v.x, -v.z, v.y),
+        }
+    }
+}
+
+impl Geometry {
+    /// Chooses what is exported. `springs` is what the format makes of [`Options::springs`].
+    ///
+    /// # Errors
+    /// [`Code::NotFound`] for a body that there is not, listing those there are; [`Code::OutOfRange`] for the scale.
+    pub fn new(run: &RunInfo, options: &Options, springs: Springs) -> Result<Self> {
+        let model = &*run.model;
+        if !SCALE_RANGE.contains(&options.scale) {
+            let (low, high) = (SCALE_RANGE.start(), SCALE_RANGE.end());
+            let sentence = format!("is {}, and must be from {low} to {high} units per metre", options.scale);
+            return Err(Error::new(Code::OutOfRange, sentence).in_file("--scale"));
+        }
+        let mut geometry = Self {
+            parts: Vec::new(),
+            lines: Vec::new(),
+            sources: Vec::new(),
+            tubes: None,
+            place: Placement { up: options.up, scale: options.scale as f32 },
+            positions: Vec::new(),
+            velocities: Vec::new(),
+        };
+        for index in chosen(model, options.bodies.as_deref())? {
+            geometry.add_body(model, index, options.points);
+        }
+        match springs {
+            Springs::None => {}
+            Springs::Lines => geometry.add_lines(run),
+            Springs::Tubes => geometry.add_tubes(run),
+        }
+        Ok(geometry)
+    }
+
+    /// The parts, in order; together they hold every vertex.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The springs as lines; none unless they were asked for.
+    pub fn lines(&self) -> &[Line] {
+        &self.lines
+    }
+
+    /// How many vertices there are, in every frame.
+    pub fn vertex_count(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.vertices.end)
+    }
+
+    /// How many triangles there are, in every frame.
+    pub fn triangle_count(&self) -> usize {
+        self.parts.iter().map(|part| part.triangles.len()).sum()
+    }
+
+    /// The points of the model that the vertices of the bodies are, in order.
+    pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
+        self.sources.iter().flat_map(Range::clone)
+    }
+
+    /// All triangles, their corners as indices into [`positions`](Self::positions).
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.parts.iter().flat_map(|part| {
+            let first = part.vertices.start as u32;
+            part.triangles.iter().map(move |triangle| triangle.map(|corner| first + corner))
+        })
+    }
+
+    /// Takes the vertices of a frame.
+    pub fn take(&mut self, frame: &Frame<'_>) {
+        let (points, speeds) = (&frame.snapshot.positions, &frame.snapshot.velocities);
+        let Placement { scale, .. } = self.place;
+        for (from, to) in [(points, &mut self.positions), (speeds, &mut self.velocities)] {
+            to.clear();
+            for source in &self.sources {
+                to.extend(from[source.clone()].iter().map(|&v| self.place.turn(v) * scale));
+            }
+        }
+        if let Some((tubes, radius)) = &self.tubes {
+            for ends in tubes {
+                let [a, b] = ends.map(|end| self.place.turn(points[end as usize]) * scale);
+                self.positions.extend(tube(a, b, radius * scale));
+                let speeds = ends.map(|end| self.place.turn(speeds[end as usize]) * scale);
+                self.velocities.extend(speeds.iter().flat_map(|&speed| [speed; TUBE_SIDES]));
+            }
+        }
+    }
+
+    /// Where the vertices are, in the file's axes and unit.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// How fast they move, in the file's unit per second.
+    pub fn velocities(&self) -> &[Vec3] {
+        &self.velocities
+    }
+
+    /// The normal of each vertex, of length one: the mean over its triangles, weighted by their areas. Zero where there is
+    /// none.
+    pub fn normals(&self, normals: &mut Vec<Vec3>) {
+        normals.clear();
+        normals.resize(self.positions.len(), Vec3::ZERO);
+        for triangle in self.triangles() {
+            let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+            let normal = (b - a).cross(c - a);
+            triangle.iter().for_each(|&corner| normals[corner as usize] += normal);
+        }
+        normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+    }
+
+    /// A vector without a length in space, such as a force, in the file's axes.
+    pub fn turned(&self, vector: Vec3) -> Vec3 {
+        self.place.turn(vector)
+    }
+
+    fn add_body(&mut self, model: &Model, index: usize, as_points: bool) {
+        let body = &model.bodies()[index];
+        let vertices = self.extend(body.points.len());
+        self.sources.push(body.points.clone());
+        let surfaces = || model.surfaces().iter().filter(|surface| surface.body == index && !as_points);
+        let first = body.points.start as u32;
+        self.parts.push(Part {
+            name: body.name.clone(),
+            body: Some(index),
+            vertices,
+            triangles: surfaces()
+                .flat_map(|surface| &surface.triangles)
+                .map(|triangle| triangle.map(|corner| corner - first))
+                .collect(),
+            is_closed: surfaces().count() > 0 && surfaces().all(|surface| surface.kind == SurfaceKind::Skin),
+            colour: rgb(BODY_COLOURS[index % BODY_COLOURS.len()]),
+        });
+    }
+
+    /// The range of so many more vertices.
+    fn extend(&self, count: usize) -> Range<usize> {
+        let start = self.vertex_count();
+        start..start + count
+    }
+
+    fn add_lines(&mut self, run: &RunInfo) {
+        let vertex_of = |point: u32| {
+            // Bodies, and so the sources, are in ascending order.
+            let point = point as usize;
+            let part = self.sources.partition_point(|source| source.end <= point);
+            let source = self.sources.get(part).filter(|source| source.contains(&point))?;
+            Some((point - source.start + self.parts[part].vertices.start) as u32)
+        };
+        let mut lines = Vec::new();
+        for spring in whole_springs(run) {
+            let [i, j] = run.model.springs()[spring];
+            if let (Some(i), Some(j)) = (vertex_of(i), vertex_of(j)) {
+                lines.push(Line { spring, ends: [i, j] });
+            }
+        }
+        self.lines = lines;
+    }
+
+    fn add_tubes(&mut self, run: &RunInfo) {
+        self.add_lines(run);
+        let ends: Vec<[u32; 2]> = self.lines.drain(..).map(|line| run.model.springs()[line.spring]).collect();
+        let vertices = self.extend(2 * TUBE_SIDES * ends.len());
+        let triangles = (0..ends.len()).flat_map(|tube| tube_triangles((2 * TUBE_SIDES * tube) as u32));
+        self.parts.push(Part {
+            name: "springs".into(),
+            body: None,
+            vertices,
+            triangles: triangles.collect(),
+            is_closed: true,
+            colour: rgb(SPRING_COLOUR),
+        });
+        self.tubes = Some((ends, tube_radius(&run.model)));
+    }
+}
+
+/// The bodies that are exported, as indices in the model's order.
+fn chosen(model: &Model, names: Option<&[String]>) -> Result<Vec<usize>> {
+    let Some(names) = names else { return Ok((0..model.bodies().len()).collect()) };
+    let called = |name: &String| model.bodies().iter().position(|body| body.name == *name);
+    let mut bodies = names
+        .iter()
+        .map(|name| {
+            called(name).ok_or_else(|| {
+                let there: Vec<&str> = model.bodies().iter().map(|body| body.name.as_str()).collect();
+                let sentence = format!("there is no body \"{name}\"; there are {}", there.join(", "));
+                Error::new(Code::NotFound, sentence).in_file("--body")
+            })
+        })
+        .collect::<Result<Vec<usize>>>()?;
+    bodies.sort_unstable();
+    bodies.dedup();
+    Ok(bodies)
+}
+
+/// The springs that are not cut when the run begins.
+fn whole_springs(run: &RunInfo) -> impl Iterator<Item = usize> + '_ {
+    (0..run.model.spring_count()).filter(|&spring| !run.params.spring_cut[spring])
+}
+
+/// The radius of springs that are exported as tubes, m.
+pub fn tube_radius(model: &Model) -> f32 {
+    let mut lengths: Vec<f32> = model.spring_rest_length().iter().copied().filter(|&l| l > 0.0).collect();
+    if lengths.is_empty() {
+        return 0.01;
+    }
+    let middle = lengths.len() / 2;
+    TUBE_RADIUS * *lengths.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
+/// A tube's two ends, a ring of corners each. Around which axis the rings start depends on the direction alone.
+fn tube(a: Vec3, b: Vec3, radius: f32) -> impl Iterator<Item = Vec3> {
+    let along = (b - a).normalize_or(Vec3::Y);
+    let (u, v) = along.any_orthonormal_pair();
+    let ring = move |centre: Vec3| TUBE_RING.into_iter().map(move |[x, y]| centre + radius * (x * u + y * v));
+    ring(a).chain(ring(b))
+}
+
+/// The triangles of a tube whose first corner is `first`: its sides, then its two caps.
+fn tube_triangles(first: u32) -> impl Iterator<Item = [u32; 3]> {
+    let sides = TUBE_SIDES as u32;
+    let around = (0..sides).flat_map(move |side| {
+        let next = (side + 1) % sides;
+        [[side, next, sides + next], [side, sides + next, sides + side]]
+    });
+    let caps =
+        (1..sides - 1).flat_map(move |side| [[0, side + 1, side], [sides, sides + side, sides + side + 1]]);
+    around.chain(caps).map(move |triangle| triangle.map(|corner| first + corner))
+}
+
+fn rgb(hex: u32) -> [u8; 3] {
+    let [_, r, g, b] = hex.to_be_bytes();
+    [r, g, b]
+}
