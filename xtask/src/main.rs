@@ -52,7 +52,11 @@ const STAGES: &[Stage] = &[
         run: window_story::run_all,
     },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
-    Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
+    Stage {
+        name: "fuzz",
+        about: "a minute of random scene files, and half of one of checkpoints, crashes nothing",
+        run: stages::fuzz,
+    },
     Stage {
         name: "licences",
         about: "licences, duplicates and sources of dependencies",

@@ -43,7 +43,7 @@ pub enum Command {
     View(ViewArgs),
     /// List the built-in scenes
     Scenes,
-    /// Describe a scene: points, springs, energy, and how large dt may be
+    /// Describe a scene or a checkpoint: points, springs, energy, and how large dt may be
     Show(ShowArgs),
     /// Simulate a scene and write its motion
     Run(RunArgs),

@@ -4,6 +4,9 @@ use std::path::Path;
 
 use sprung::{Code, Error, Result};
 
+use super::sequence::Sequence;
+use crate::pack::{Pack, Unpack};
+
 /// How far an output had got: small, and stored in a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mark {
@@ -23,6 +26,25 @@ impl Mark {
     pub fn files_of<const N: usize>(&self, path: &Path) -> Result<[&FileMark; N]> {
         let files: Vec<&FileMark> = self.files.iter().collect();
         files.try_into().map_err(|_| Self::strange(path))
+    }
+
+    /// That of a format which is a sequence of files and nothing else.
+    pub(super) fn of_sequence(files: &mut Sequence) -> Self {
+        let mut memory = Pack::new();
+        let frames = files.mark(&mut memory);
+        Self { frames, files: Vec::new(), memory: memory.into_bytes() }
+    }
+
+    /// The sequence of such a format, to go on with.
+    pub(super) fn sequence_of(&self, path: &Path) -> Result<Sequence> {
+        let [] = self.files_of(path)?;
+        let mut memory = Unpack::new(&self.memory);
+        let files = Sequence::resume(path, &mut memory)?;
+        memory.end()?;
+        if files.frames() != self.frames {
+            return Err(Self::strange(path));
+        }
+        Ok(files)
     }
 
     /// The error for a mark that a format cannot have made.
