@@ -46,7 +46,7 @@ pub enum Command {
     /// Describe a scene or a checkpoint: points, springs, energy, and how large dt may be
     Show(ShowArgs),
     /// Simulate a scene and write its motion
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// Measure nanoseconds per spring and step
     Bench(BenchArgs),
     /// Write a commented scene file to start from

@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-/// All formats that can be gone on with, and the energy plot, which has the ledger kept.
-const OUTPUTS: &[&str] = &["a.csv", "a.npz", "a.gif", "a.png"];
+/// Formats that keep files beside them, fill in what comes first, or draw; and the energy plot, which has the ledger kept.
+const OUTPUTS: &[&str] = &["a.csv", "a.npz", "a.pc2", "a.mdd", "a.gif", "a.png"];
 const PLOT: &str = "a.svg";
 
 /// A run of a second or so in a debug build.
