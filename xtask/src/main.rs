@@ -58,7 +58,11 @@ const STAGES: &[Stage] = &[
         run: stages::exports,
     },
     Stage { name: "blender", about: "so does Blender, which plays the caches", run: stages::blender },
-    Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
+    Stage {
+        name: "fuzz",
+        about: "a minute of random scene files, and half of one of checkpoints, crashes nothing",
+        run: stages::fuzz,
+    },
     Stage {
         name: "licences",
         about: "licences, duplicates and sources of dependencies",

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::shell::{Outcome, cargo, program, read, root, run, succeeds, target};
 
-/// How long the fuzzer runs.
-const FUZZ_SECONDS: u32 = 60;
+/// How long the fuzzer runs on scenes, and on checkpoints.
+const FUZZ_SECONDS: [u32; 2] = [60, 30];
 
 pub fn fmt() -> Outcome {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
@@ -169,31 +169,48 @@ fn python_with(venv: &str, system: &str, packages: &[&str]) -> Outcome<PathBuf> 
     Ok(python)
 }
 
-/// Random scene files, grown from those in `scenes/` by what code they reach. See fuzz/README.md.
+/// Random scene files, grown from those in `scenes/` by what code they reach, and random checkpoints. See fuzz/README.md.
 pub fn fuzz() -> Outcome {
+    let [scenes, checkpoints] = FUZZ_SECONDS;
     let seeds = fresh_folder("fuzz-seeds")?;
     for path in files_in(&root().join("scenes"))? {
         let name = path.file_name().unwrap_or_default();
         fs::copy(&path, seeds.join(name))
             .map_err(|error| format!("{} cannot be copied: {error}", path.display()))?;
     }
+    fuzz_one("scene", &seeds, &["-dict=scene.dict", "-max_len=4096"], scenes)?;
+
+    let seeds = fresh_folder("fuzz-seeds-checkpoint")?;
+    let digits = fs::read_to_string(root().join("crates/sprung-io/tests/checkpoints/version-1.hex"));
+    let digits = digits.map_err(|error| format!("version-1.hex cannot be read: {error}"))?;
+    let digits: Vec<char> = digits.chars().filter(char::is_ascii_hexdigit).collect();
+    let byte = |pair: &[char]| u8::from_str_radix(&pair.iter().collect::<String>(), 16).unwrap_or(0);
+    let bytes: Vec<u8> = digits.chunks(2).map(byte).collect();
+    fs::write(seeds.join("version-1"), bytes)
+        .map_err(|error| format!("a seed cannot be written: {error}"))?;
+    fuzz_one("checkpoint", &seeds, &["-max_len=8192"], checkpoints)
+}
+
+fn fuzz_one(target_name: &str, seeds: &Path, options: &[&str], seconds: u32) -> Outcome {
     // What was found earlier is kept: it makes the next run start from where this one ended.
-    let found = target().join("fuzz-corpus");
+    let suffix = if target_name == "scene" { String::new() } else { format!("-{target_name}") };
+    let found = target().join(format!("fuzz-corpus{suffix}"));
     let crashes = target().join("fuzz-crashes");
     for folder in [&found, &crashes] {
         fs::create_dir_all(folder)
             .map_err(|error| format!("{} cannot be made: {error}", folder.display()))?;
     }
-    let mut command = cargo(&["run", "--locked", "--release", "--bin", "scene", "--"]);
+    let mut command = cargo(&["run", "--locked", "--release", "--bin", target_name, "--"]);
     command
         // Cargo reads the compiler flags for coverage from fuzz/.cargo/config.toml when it runs there.
         .current_dir(root().join("fuzz"))
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .args([&found, &seeds])
+        .args([found.as_path(), seeds])
         .arg(format!("-artifact_prefix={}/", crashes.display()))
-        .arg(format!("-max_total_time={FUZZ_SECONDS}"))
-        .args(["-dict=scene.dict", "-max_len=4096", "-mutate_depth=2"])
+        .arg(format!("-max_total_time={seconds}"))
+        .args(options)
+        .arg("-mutate_depth=2")
         .args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=0"]);
     run(&mut command).map_err(|reason| {
         format!(

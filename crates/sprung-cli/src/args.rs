@@ -1,6 +1,7 @@
 //! The arguments: one definition for parsing, help, completions and the man page.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -42,10 +43,10 @@ pub enum Command {
     View(ViewArgs),
     /// List the built-in scenes
     Scenes,
-    /// Describe a scene: points, springs, energy, and how large dt may be
+    /// Describe a scene or a checkpoint: points, springs, energy, and how large dt may be
     Show(ShowArgs),
     /// Simulate a scene and write its motion
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// Measure nanoseconds per spring and step
     Bench(BenchArgs),
     /// Write a commented scene file to start from
@@ -96,11 +97,14 @@ pub struct ShowArgs {
 }
 
 /// Arguments of `run`.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct RunArgs {
-    /// The scene.
-    #[command(flatten)]
-    pub scene: SceneArgs,
+    /// A built-in scene's name, a scene file, or a checkpoint whose state is to be the first frame
+    #[arg(required_unless_present = "resume")]
+    pub scene: Option<String>,
+    /// Change a value of the scene, such as dt=0.005, gravity=[0,-1.62,0] or body.jelly.springs.stiffness=500
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     /// A file to write; its ending chooses the format
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
@@ -135,12 +139,38 @@ pub struct RunArgs {
     /// Say what would be simulated and written, and do neither
     #[arg(long)]
     pub dry_run: bool,
+    /// Save all it takes to go on with the run, its outputs too, into this file every now and then
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often: after so much time on the clock, such as 30s, 5m or 1h, or after so many frames, such as 100 [default: 1m]
+    #[arg(long, value_name = "TIME|N", allow_negative_numbers = true, value_parser = every)]
+    pub every: Option<Every>,
+    /// Complete the run that this checkpoint is of, after it was killed: to the same bytes as if it had not been.
+    /// --seconds or --frames make it longer or shorter
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "set", "output", "fps", "settle", "plot", "at", "size", "from", "up", "scale", "springs", "body", "points", "dry_run", "checkpoint"])]
+    pub resume: Option<PathBuf>,
     /// Worker threads, the most that are used; the result is the same for any number [default: one for each processor]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
     /// No progress bar and no summary
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl RunArgs {
+    /// The scene and what is changed of it.
+    pub fn scene(&self) -> SceneArgs {
+        SceneArgs { scene: self.scene.clone().unwrap_or_default(), set: self.set.clone() }
+    }
+}
+
+/// How often a checkpoint is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Every {
+    /// After so many frames.
+    Frames(u64),
+    /// After so much time, as soon as a frame is whole.
+    Time(Duration),
 }
 
 /// What of the geometry is exported, and how.
@@ -221,6 +251,25 @@ fn scale(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
     let (low, high) = (SCALE_RANGE.start(), SCALE_RANGE.end());
     if SCALE_RANGE.contains(&value) { Ok(value) } else { Err(format!("it must be from {low} to {high}")) }
+}
+
+/// `30s`, `5m`, `1h`, or a number of frames.
+pub fn every(text: &str) -> Result<Every, String> {
+    let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let told = "it must be a time such as 30s, 5m or 1h, or a number of frames such as 100";
+    for (unit, seconds) in units {
+        let Some(number) = text.strip_suffix(unit) else { continue };
+        let time = finite(number).map_err(|_| told.to_owned())? * seconds;
+        if !(0.0..=1e7).contains(&time) {
+            return Err("it must be at most 10,000,000 s".to_owned());
+        }
+        return Ok(Every::Time(Duration::from_secs_f64(time)));
+    }
+    match text.parse() {
+        Ok(frames @ 1..=100_000_000) => Ok(Every::Frames(frames)),
+        Ok(_) => Err("it must be from 1 to 100,000,000 frames".to_owned()),
+        Err(_) => Err(told.to_owned()),
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

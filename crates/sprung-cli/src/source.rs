@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use sprung::scene::{self, Scene};
 use sprung::{Code, Error, Inline, Result, Simulation, Workers};
+use sprung_io::checkpoint::{self, Saved, Stored};
 use sprung_io::files;
 
 use crate::args::SceneArgs;
@@ -28,8 +29,67 @@ pub fn scene_and_file(args: &SceneArgs) -> Result<(String, Scene, Option<PathBuf
     Ok((name, scene, file))
 }
 
+/// Whether this names a checkpoint.
+pub fn is_checkpoint(text: &str) -> bool {
+    Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(checkpoint::ENDING))
+}
+
+/// A simulation, its scene, and the name to call it by.
+pub struct Begun {
+    pub name: String,
+    pub scene: Scene,
+    pub simulation: Simulation,
+}
+
+/// The simulation of a scene at its start, or of a checkpoint.
+pub fn begun(args: &SceneArgs, threads: Option<usize>) -> Result<Begun> {
+    if !is_checkpoint(&args.scene) {
+        let (name, scene) = scene(args)?;
+        let simulation = simulation(&scene, threads)?;
+        return Ok(Begun { name, scene, simulation });
+    }
+    if let Some(assignment) = args.set.first() {
+        let error =
+            Error::new(Code::Conflict, "changes a scene, and a checkpoint holds one that is under way");
+        return Err(error.in_file(format!("--set {assignment}")).with_fix("leave it out"));
+    }
+    let path = Path::new(&args.scene);
+    begun_from(path, &read(path, &Stored::open(path)?)?, threads)
+}
+
+/// Reads a checkpoint, after asking whether there is memory for it.
+pub fn read(path: &Path, stored: &Stored) -> Result<Saved> {
+    let named = |error: Error| error.in_file(path.display().to_string());
+    memory::check(stored.memory(), "the checkpoint").map_err(named)?;
+    stored.read()
+}
+
+/// The simulation that a checkpoint holds.
+pub fn begun_from(path: &Path, saved: &Saved, threads: Option<usize>) -> Result<Begun> {
+    let begun = || -> Result<Begun> {
+        let scene = saved.scene()?;
+        memory::check(scene.estimated_bytes(), "the scene in it")?;
+        let (model, ..) = scene.build()?;
+        let mut simulation = saved.simulation(model)?;
+        simulation.keep_history(0);
+        simulation.set_workers(workers(threads)?);
+        Ok(Begun { name: saved.scene_name.clone(), scene, simulation })
+    };
+    begun().map_err(|error| {
+        let place = error.place();
+        let inner = place.field.as_ref().map(|field| format!("{field}: ")).unwrap_or_default();
+        let sentence = format!("cannot be gone on with: {inner}{}", error.sentence());
+        let outer = Error::new(error.code(), sentence).in_file(path.display().to_string());
+        error.fix().map(str::to_owned).into_iter().fold(outer, Error::with_fix)
+    })
+}
+
 fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
     let path = Path::new(text);
+    if is_checkpoint(text) {
+        let error = Error::new(Code::Unsupported, "is a checkpoint, and a scene is wanted here");
+        return Err(error.in_file(text).with_fix("`sprung run` and `sprung show` take checkpoints"));
+    }
     let looks_like_a_file = path.extension().is_some() || text.contains(['/', '\\']) || path.exists();
     match Scene::builtin(text) {
         Ok(scene) => Ok((text.to_owned(), scene, None)),

@@ -1,11 +1,15 @@
 //! The one place that knows paths: outputs grow beside their place and are renamed when whole.
 
+mod resume;
+
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use same_file::Handle;
 use sprung::{Code, Error, Result};
+
+pub use resume::{is_complete, remove_spools};
 
 /// Bytes gathered before they are handed to the system.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -20,6 +24,9 @@ const BUFFER_BYTES: usize = 1 << 16;
 ///
 /// A format that can keep what was written before the disk filled up calls [`commit`](Self::commit) after each whole
 /// frame and [`roll_back`](Self::roll_back) before it completes the file.
+///
+/// Once a checkpoint relies on it, by [`mark`](Self::mark), it stays where it is when it is dropped unfinished, and
+/// [`resume`](Self::resume) goes on with it.
 #[derive(Debug)]
 pub struct PartialFile {
     /// The name as the user gave it, for messages.
@@ -29,6 +36,21 @@ pub struct PartialFile {
     partial: PathBuf,
     writer: Option<BufWriter<File>>,
     committed: u64,
+    /// What happens to it when it is dropped unfinished.
+    fate: Fate,
+    /// How much of it the last mark has read, and the checksum of that.
+    marked: resume::Marked,
+}
+
+/// What becomes of a partial file that is dropped unfinished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fate {
+    /// It is removed.
+    Removed,
+    /// It stays: a checkpoint relies on it.
+    Stays,
+    /// It has no name, and is gone by itself.
+    Nameless,
 }
 
 impl PartialFile {
@@ -39,26 +61,31 @@ impl PartialFile {
     /// there and no regular file, or it is being written already.
     pub fn create(path: &Path) -> Result<Self> {
         let target = target_of(path)?;
-        let mut name = target.file_name().unwrap_or_default().to_owned();
-        name.push(".partial");
-        let partial = target.with_file_name(name);
-        let file = open_locked(&partial).map_err(|error| match error.kind() {
-            io::ErrorKind::WouldBlock => {
-                unwritable(path, "cannot be written: another output is being written there")
-                    .with_fix("wait until it is done, or give another name")
-            }
-            io::ErrorKind::AlreadyExists => {
-                let name = partial.display();
-                unwritable(
-                    path,
-                    format!("cannot be written: {name} is in the way, and is not a regular file"),
-                )
-                .with_fix("remove it, or give another name")
-            }
-            _ => write_error(path, &error),
-        })?;
+        let partial = partial_of(path, &target, "")?;
+        let file = open_locked(&partial, Opening::Anew).map_err(|error| not_begun(path, &partial, &error))?;
+        Ok(Self::new(path, target, partial, file, Fate::Removed))
+    }
+
+    /// A temporary file beside an output, on the disk that has room for it. It never gets a name of its own; with `keep` it
+    /// grows as `NAME.PART.partial`, to be there after the run was killed, and otherwise it has no name at all.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create), naming the output.
+    pub fn spool(path: &Path, part: &str, keep: bool) -> Result<Self> {
+        if !keep {
+            let file = spool_beside(path)?;
+            return Ok(Self::new(path, PathBuf::new(), PathBuf::new(), file, Fate::Nameless));
+        }
+        let target = target_of(path)?;
+        let partial = partial_of(path, &target, part)?;
+        let file = open_locked(&partial, Opening::Anew).map_err(|error| not_begun(path, &partial, &error))?;
+        Ok(Self::new(path, target, partial, file, Fate::Removed))
+    }
+
+    fn new(path: &Path, target: PathBuf, partial: PathBuf, file: File, fate: Fate) -> Self {
         let writer = Some(BufWriter::with_capacity(BUFFER_BYTES, file));
-        Ok(Self { path: path.to_owned(), target, partial, writer, committed: 0 })
+        let marked = resume::Marked::default();
+        Self { path: path.to_owned(), target, partial, writer, committed: 0, fate, marked }
     }
 
     /// The name the file will have, as it was given.
@@ -94,6 +121,41 @@ impl PartialFile {
         result.map(|_| ())
     }
 
+    /// As [`roll_back`](Self::roll_back), to an end of the file that the caller remembers.
+    ///
+    /// # Errors
+    /// If the system cannot shorten the file.
+    pub fn roll_back_to(&mut self, bytes: u64) -> io::Result<()> {
+        self.committed = bytes;
+        self.roll_back()
+    }
+
+    /// Writes out what is buffered and reads from there on, to the end of `bytes`.
+    ///
+    /// # Errors
+    /// As reading does. The next write must be preceded by a seek.
+    pub fn read_at(&mut self, start: u64, bytes: &mut [u8]) -> io::Result<()> {
+        self.flush()?;
+        let file = self.writer().get_mut();
+        file.seek(SeekFrom::Start(start))?;
+        file.read_exact(bytes)
+    }
+
+    /// Cuts the file off.
+    ///
+    /// # Errors
+    /// If the system cannot shorten the file.
+    pub fn shorten(&mut self, bytes: u64) -> io::Result<()> {
+        self.committed = self.committed.min(bytes);
+        self.flush()?;
+        self.writer().get_mut().set_len(bytes)
+    }
+
+    /// Whether it has a name, and so is there after the run was killed.
+    pub fn has_name(&self) -> bool {
+        self.fate != Fate::Nameless
+    }
+
     /// Moves all that lies from `end` on down to `start`, and cuts the file to its new length. Takes no room.
     ///
     /// # Errors
@@ -123,18 +185,34 @@ impl PartialFile {
     /// # Errors
     /// [`Code::Unwritable`], naming the file; nothing is left of it then.
     pub fn finish(mut self) -> Result<u64> {
+        let file = self.complete().map_err(|error| write_error(&self.path, &error))?;
+        Ok(file.metadata().map_err(|error| write_error(&self.path, &error))?.len())
+    }
+
+    /// As [`finish`](Self::finish), and gives the file, still locked.
+    ///
+    /// # Errors
+    /// As [`finish`](Self::finish).
+    pub fn finish_locked(mut self) -> Result<File> {
         self.complete().map_err(|error| write_error(&self.path, &error))
     }
 
-    fn complete(&mut self) -> io::Result<u64> {
+    fn complete(&mut self) -> io::Result<File> {
         self.flush()?;
         let file = self.writer().get_ref();
         file.sync_all()?;
-        let bytes = file.metadata()?.len();
         // Renamed while still locked: nobody can take the partial file for an abandoned one in between.
         std::fs::rename(&self.partial, &self.target)?;
-        self.writer = None;
-        Ok(bytes)
+        sync_folder_of(&self.target);
+        let writer = self.writer.take().ok_or(io::ErrorKind::NotFound)?;
+        Ok(writer.into_parts().0)
+    }
+
+    /// Removes the file, whoever relies on it.
+    pub fn discard(mut self) {
+        if self.fate == Fate::Stays {
+            self.fate = Fate::Removed;
+        }
     }
 
     fn writer(&mut self) -> &mut BufWriter<File> {
@@ -147,7 +225,9 @@ impl Drop for PartialFile {
         if let Some(writer) = self.writer.take() {
             // Not flushed: what is buffered is of no use any more. Removed before the lock is let go.
             let (file, _) = writer.into_parts();
-            let _ = std::fs::remove_file(&self.partial);
+            if self.fate == Fate::Removed {
+                let _ = std::fs::remove_file(&self.partial);
+            }
             drop(file);
         }
     }
@@ -194,15 +274,65 @@ fn target_of(path: &Path) -> Result<PathBuf> {
     }
 }
 
-/// Opens or creates a file, empty and locked. `WouldBlock` if somebody else holds the lock, `AlreadyExists` if what has
-/// the name is no regular file: opening a pipe would wait for its reader, and a link leads to a file that is not ours.
-fn open_locked(path: &Path) -> io::Result<File> {
+/// The partial file of an output, or one of those beside it.
+fn partial_of(path: &Path, target: &Path, part: &str) -> Result<PathBuf> {
+    let Some(name) = target.file_name() else {
+        return Err(unwritable(path, "cannot be written: it is not a file's name"));
+    };
+    let mut name = name.to_owned();
+    if !part.is_empty() {
+        name.push(".");
+        name.push(part);
+    }
+    name.push(".partial");
+    Ok(target.with_file_name(name))
+}
+
+/// The sentence for a partial file that could not be begun.
+fn not_begun(path: &Path, partial: &Path, error: &io::Error) -> Error {
+    match error.kind() {
+        io::ErrorKind::WouldBlock => {
+            unwritable(path, "cannot be written: another output is being written there")
+                .with_fix("wait until it is done, or give another name")
+        }
+        io::ErrorKind::AlreadyExists => {
+            let sentence =
+                format!("cannot be written: {} is in the way, and is not a regular file", partial.display());
+            unwritable(path, sentence).with_fix("remove it, or give another name")
+        }
+        _ => write_error(path, error),
+    }
+}
+
+/// Makes a file's new name last through a loss of power, where the system can.
+fn sync_folder_of(path: &Path) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
+/// What a file is opened for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Opening {
+    /// To be written from the start: it is empty.
+    Anew,
+    /// To go on with: it must be there, and is as it was.
+    AsItIs,
+    /// The same, to be read only.
+    ToRead,
+}
+
+/// Opens or creates a file, locked. `WouldBlock` if somebody else holds the lock, `AlreadyExists` if what has the name is
+/// no regular file: opening a pipe would wait for its reader, and a link leads to a file that is not ours.
+fn open_locked(path: &Path, opening: Opening) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(opening != Opening::ToRead);
     loop {
         let opened = match path.symlink_metadata() {
             // Not truncated before it is ours: it may be another run's.
-            Ok(found) if found.is_file() => OpenOptions::new().read(true).write(true).open(path),
+            Ok(found) if found.is_file() => options.open(path),
             Ok(_) => return Err(io::ErrorKind::AlreadyExists.into()),
-            Err(_) => OpenOptions::new().read(true).write(true).create_new(true).open(path),
+            Err(error) if opening != Opening::Anew => return Err(error),
+            Err(_) => options.clone().create_new(true).open(path),
         };
         let file = match opened {
             Ok(file) => file,
@@ -213,13 +343,7 @@ fn open_locked(path: &Path) -> io::Result<File> {
             }
             Err(error) => return Err(error),
         };
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(io::ErrorKind::WouldBlock.into()),
-            // Some network file systems know no locks; there, the last writer wins.
-            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
-            Err(TryLockError::Error(error)) => return Err(error),
-        }
+        lock(&file)?;
         // Another run may have completed and renamed the file between our opening and our lock. Then what we hold is
         // its finished output, and the partial name is free: try again.
         let still_named = match Handle::from_path(path) {
@@ -228,9 +352,22 @@ fn open_locked(path: &Path) -> io::Result<File> {
             Err(error) => return Err(error),
         };
         if still_named {
-            file.set_len(0)?;
+            if opening == Opening::Anew {
+                file.set_len(0)?;
+            }
             return Ok(file);
         }
+    }
+}
+
+/// Locks a file. `WouldBlock` if somebody else has.
+fn lock(file: &File) -> io::Result<()> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
+        // Some network file systems know no locks; there, the last writer wins.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(TryLockError::Error(error)) => Err(error),
     }
 }
 
@@ -350,15 +487,7 @@ pub fn spool() -> io::Result<File> {
 /// # Errors
 /// [`Code::Unreadable`] or [`Code::TooLarge`], naming the file.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let failed = |error: io::Error| {
-        let reason = match error.kind() {
-            io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            io::ErrorKind::PermissionDenied => "cannot be read: permission denied".to_owned(),
-            io::ErrorKind::IsADirectory => "is a folder, and must be a file".to_owned(),
-            _ => format!("cannot be read: {error}"),
-        };
-        Error::new(Code::Unreadable, reason).in_file(path.display().to_string())
-    };
+    let failed = |error: io::Error| read_error(path, &error);
     let file = File::open(path).map_err(failed)?;
     if file.metadata().map_err(failed)?.is_dir() {
         return Err(failed(io::ErrorKind::IsADirectory.into()));
@@ -378,12 +507,50 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`read`].
 pub fn read_ordinary(path: &Path, most: u64) -> Result<Vec<u8>> {
+    check_ordinary(path)?;
+    read(path, most)
+}
+
+/// Opens an ordinary file to read it.
+///
+/// # Errors
+/// [`Code::Unreadable`], naming the file.
+pub fn open_ordinary(path: &Path) -> Result<File> {
+    check_ordinary(path)?;
+    let file = File::open(path).map_err(|error| read_error(path, &error))?;
+    match file.metadata() {
+        Ok(found) if found.is_dir() => Err(read_error(path, &io::ErrorKind::IsADirectory.into())),
+        Ok(_) => Ok(file),
+        Err(error) => Err(read_error(path, &error)),
+    }
+}
+
+fn check_ordinary(path: &Path) -> Result<()> {
     let is_odd = std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir());
     if is_odd {
         let error = Error::new(Code::Unreadable, "is a pipe or a device, and must be an ordinary file");
         return Err(error.in_file(path.display().to_string()));
     }
-    read(path, most)
+    Ok(())
+}
+
+/// Opens a checkpoint and keeps other runs from it.
+pub(crate) fn hold(path: &Path) -> Result<File> {
+    open_locked(&target_of(path)?, Opening::ToRead).map_err(|error| match error.kind() {
+        io::ErrorKind::WouldBlock => crate::checkpoint::taken(path),
+        _ => read_error(path, &error),
+    })
+}
+
+/// The sentence for a file that cannot be read.
+pub fn read_error(path: &Path, error: &io::Error) -> Error {
+    let reason = match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "cannot be read: permission denied".to_owned(),
+        io::ErrorKind::IsADirectory => "is a folder, and must be a file".to_owned(),
+        _ => format!("cannot be read: {error}"),
+    };
+    Error::new(Code::Unreadable, reason).in_file(path.display().to_string())
 }
 
 /// The sentence for a file that cannot be written.

@@ -1,11 +1,15 @@
-//! Files: motion out, and the one place that knows paths.
+//! Files: motion out, checkpoints, and the one place that knows paths.
 //!
 //! Exporters write to anything that is [`std::io::Write`] + [`std::io::Seek`]; [`files`] alone knows paths.
 
+pub mod checkpoint;
 pub mod export;
 pub mod files;
+mod pack;
 
 pub use export::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Up, Written,
+    Estimate, Export, Exporter, FileMark, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs,
+    Up, Written,
 };
 pub use files::PartialFile;
+pub use pack::{Pack, Unpack};

@@ -162,6 +162,16 @@ impl Framing {
         }
     }
 
+    /// What was learnt from the points so far.
+    pub(crate) fn extent(&self) -> [f64; 5] {
+        [self.most[0], self.most[1], self.least[0], self.least[1], self.nearest]
+    }
+
+    /// The same view, as if these were its points so far.
+    pub(crate) fn with_extent(self, [right, up, left, down, nearest]: [f64; 5]) -> Self {
+        Self { most: [right, up], least: [left, down], nearest, ..self }
+    }
+
     /// Makes every ball so far larger by `radius`, m.
     pub fn grow(&mut self, radius: f32) {
         self.nearest -= f64::from(radius);

@@ -1,7 +1,7 @@
 //! What a picture must know of the whole motion before the first frame is drawn: its extent and its forces.
 
-use sprung::{Model, Params, Vec3};
-use sprung_io::RunInfo;
+use sprung::{Model, Params, Result, Vec3};
+use sprung_io::{Pack, RunInfo, Unpack};
 
 use crate::camera::{Bounds, Framing, Side};
 use crate::overlay::free_area;
@@ -30,6 +30,30 @@ impl Motion {
         let (low, high) = free_area(info, size);
         let [front, corner] = [Side::Front, Side::Corner].map(|side| Framing::new(side, low, high));
         Self { size, bounds: Bounds::default(), front, corner, force: 0.0, scratch: Vec::new() }
+    }
+
+    /// For the mark of a checkpoint: all that was learnt from the frames so far.
+    pub(crate) fn pack(&self, pack: &mut Pack) {
+        pack.vec3(self.bounds.low).vec3(self.bounds.high).f32(self.force);
+        [&self.front, &self.corner].into_iter().flat_map(Framing::extent).for_each(|number| {
+            pack.f64(number);
+        });
+    }
+
+    /// The other way round, for pictures of the same run and size.
+    pub(crate) fn unpack(info: &RunInfo, size: [u32; 2], unpack: &mut Unpack<'_>) -> Result<Self> {
+        let empty = Self::new(info, size);
+        let bounds = Bounds { low: unpack.vec3()?, high: unpack.vec3()? };
+        let force = unpack.f32()?;
+        let mut framing = |framing: Framing| -> Result<Framing> {
+            let mut extent = [0.0; 5];
+            for number in &mut extent {
+                *number = unpack.f64()?;
+            }
+            Ok(framing.with_extent(extent))
+        };
+        let (front, corner) = (framing(empty.front)?, framing(empty.corner)?);
+        Ok(Self { bounds, force, front, corner, ..empty })
     }
 
     /// The view that suits the motion: nearly from the front if it is flat.

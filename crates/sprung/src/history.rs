@@ -79,9 +79,9 @@ pub(crate) fn replaces(new: &Change, old: &Change) -> bool {
 /// share of how long ago it was.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
-    first: Arc<Checkpoint>,
+    first: Arc<Past>,
     /// In ascending order of the step.
-    checkpoints: Vec<Arc<Checkpoint>>,
+    checkpoints: Vec<Arc<Past>>,
     /// In ascending order of the step.
     log: Vec<(u64, Event)>,
     /// For both together, bytes. The log is kept whole, and checkpoints make room for it.
@@ -91,15 +91,15 @@ pub(crate) struct History {
     newest: u64,
 }
 
-/// A state to go on from, and the parameters then.
+/// A checkpoint: a state to go on from, and the parameters then.
 #[derive(Clone, Debug)]
-pub(crate) struct Checkpoint {
+pub(crate) struct Past {
     pub state: State,
     pub params: Arc<Params>,
 }
 
 impl History {
-    pub fn new(first: Arc<Checkpoint>, bytes: usize) -> Self {
+    pub fn new(first: Arc<Past>, bytes: usize) -> Self {
         let newest = first.state.step;
         Self {
             first,
@@ -112,7 +112,7 @@ impl History {
         }
     }
 
-    pub fn first(&self) -> &Arc<Checkpoint> {
+    pub fn first(&self) -> &Arc<Past> {
         &self.first
     }
 
@@ -179,7 +179,7 @@ impl History {
                 return;
             }
         }
-        self.checkpoints.push(Arc::new(Checkpoint { state, params: params.clone() }));
+        self.checkpoints.push(Arc::new(Past { state, params: params.clone() }));
         self.count_checkpoints();
     }
 
@@ -231,7 +231,7 @@ impl History {
     }
 
     /// The last checkpoint at or before `step`.
-    pub fn before(&self, step: u64) -> &Checkpoint {
+    pub fn before(&self, step: u64) -> &Past {
         let later = self.checkpoints.partition_point(|checkpoint| checkpoint.state.step <= step);
         if later == 0 { &self.first } else { &self.checkpoints[later - 1] }
     }

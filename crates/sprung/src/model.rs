@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::buckets::Buckets;
+use crate::state::Fnv;
 use std::sync::{Arc, OnceLock};
 
 /// A named part of a model: a range of its points, and of the springs among them.
@@ -81,6 +82,25 @@ impl Model {
     /// Rest length of each spring as it was built, m. [`Params::spring_rest_length`](crate::Params) starts from it.
     pub fn spring_rest_length(&self) -> &[f32] {
         &self.spring_rest_length
+    }
+
+    /// A fingerprint of the points, springs, rest lengths, bodies and joints: whether what was stored belongs to this model.
+    ///
+    /// 64-bit FNV-1a over little-endian bytes: the count of points (u64), both ends of every spring (u32), every rest length
+    /// (float32), and of every body and joint the name, a zero byte, and where its points (a body's) and springs end (u64).
+    pub fn fingerprint(&self) -> u64 {
+        let mut hash = Fnv::new();
+        hash.write(&(self.point_count as u64).to_le_bytes());
+        self.springs.iter().flatten().for_each(|end| hash.write(&end.to_le_bytes()));
+        self.spring_rest_length.iter().for_each(|length| hash.write(&length.to_le_bytes()));
+        let mut name = |name: &str, ends: &[usize]| {
+            hash.write(name.as_bytes());
+            hash.write(&[0]);
+            ends.iter().for_each(|&end| hash.write(&(end as u64).to_le_bytes()));
+        };
+        self.bodies.iter().for_each(|body| name(&body.name, &[body.points.end, body.springs.end]));
+        self.joints.iter().for_each(|joint| name(&joint.name, &[joint.springs.end]));
+        hash.0
     }
 
     /// The springs that end at a point, in ascending order; none if there is no such point.

@@ -1,5 +1,7 @@
 //! The simulation: model, parameters, state and solver bundled.
 
+mod checkpoint;
+
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
@@ -8,7 +10,7 @@ use glam::Vec3;
 use crate::current::Current;
 use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
 use crate::error::{Code, Error, Result};
-use crate::history::{self, Checkpoint, DEFAULT_HISTORY_BYTES, Event, History};
+use crate::history::{self, DEFAULT_HISTORY_BYTES, Event, History, Past};
 use crate::math::{without_negligible, without_subnormals};
 use crate::model::Model;
 use crate::params::{Change, Params, check_vectors};
@@ -18,6 +20,8 @@ use crate::stability::{self, Limit};
 use crate::state::{Snapshot, State};
 use crate::watch::{self, Watch};
 use crate::workers::{Inline, Workers};
+
+pub use checkpoint::Checkpoint;
 
 /// The step that a state may be at when a run begins: whole numbers up to here are exact in float64.
 const MOST_STEPS: u64 = 1 << 53;
@@ -57,7 +61,7 @@ pub struct Simulation {
     workers: Arc<dyn Workers>,
     watch: Watch,
     /// Where [`reset`](Self::reset) goes.
-    start: Arc<Checkpoint>,
+    start: Arc<Past>,
     history: History,
     history_budget: usize,
     drives: Drives,
@@ -78,7 +82,7 @@ enum Placed {
     /// A point.
     Point { point: usize, position: [Vec3; 2], velocity: [Vec3; 2], work_in: f64 },
     /// Parameters, by this change: it may have stopped points, and the clock.
-    Params(Change, Arc<Checkpoint>),
+    Params(Change, Arc<Past>),
 }
 
 impl Simulation {
@@ -114,9 +118,9 @@ impl Simulation {
     }
 
     /// Goes on from what has been checked.
-    fn begin(model: Arc<Model>, params: Params, current: Current) -> Self {
-        let params = Arc::new(params);
-        let start = Arc::new(Checkpoint { state: current.copied(), params: params.clone() });
+    fn begin(model: Arc<Model>, params: impl Into<Arc<Params>>, current: Current) -> Self {
+        let params = params.into();
+        let start = Arc::new(Past { state: current.copied(), params: params.clone() });
         Self {
             workers: Arc::new(Inline),
             watch: Watch::new(&params),
@@ -249,7 +253,7 @@ impl Simulation {
         }
         let checkpoint = self.history.before(step);
         if !(checkpoint.state.step..=step).contains(&self.current.step()) {
-            let Checkpoint { state, params } = Checkpoint::clone(checkpoint);
+            let Past { state, params } = Past::clone(checkpoint);
             self.restore(state, params, 0);
             self.redo_events(0)?;
         }
@@ -280,7 +284,7 @@ impl Simulation {
     /// Back to the state and the parameters this simulation was made with, bit for bit. The log starts anew.
     pub fn reset(&mut self) {
         self.history = History::new(self.start.clone(), self.history_budget);
-        let Checkpoint { state, params } = (*self.start).clone();
+        let Past { state, params } = (*self.start).clone();
         self.restore(state, params, 0);
     }
 
@@ -356,15 +360,14 @@ impl Simulation {
     }
 
     /// Sets the memory for checkpoints and log, bytes, and starts both anew from the current state, the earliest that can
-    /// then be rewound to. Zero keeps no checkpoint but that. Checkpoints lie close together in the recent past and ever
+    /// then be rewound to. Zero keeps no checkpoint but that. Pasts lie close together in the recent past and ever
     /// further apart before it; every step can be gone to, but one that is long past takes longer. The log is kept whole:
     /// checkpoints make room for it, down to a quarter of this memory.
     pub fn keep_history(&mut self, bytes: usize) {
         self.history_budget = bytes;
         let untouched =
             *self.current.state() == self.start.state && Arc::ptr_eq(&self.params, &self.start.params);
-        let here =
-            || Arc::new(Checkpoint { state: self.current.state().clone(), params: self.params.clone() });
+        let here = || Arc::new(Past { state: self.current.state().clone(), params: self.params.clone() });
         let first = if untouched { self.start.clone() } else { here() };
         self.history = History::new(first, bytes);
         self.placed = None;
@@ -478,14 +481,14 @@ impl Simulation {
             // A value that is set twice between two steps was set once, from how it was before the first time.
             let first = match placed {
                 Some(Placed::Params(last, first)) if history::replaces(change, &last) => {
-                    let Checkpoint { state, params } = Checkpoint::clone(&first);
+                    let Past { state, params } = Past::clone(&first);
                     *self.current.state_mut() = state;
                     self.set_params(params);
                     first
                 }
                 _ => {
                     let (state, params) = (self.current.state().clone(), self.params.clone());
-                    Arc::new(Checkpoint { state, params })
+                    Arc::new(Past { state, params })
                 }
             };
             self.placed = Some(Placed::Params(change.clone(), first));
@@ -703,20 +706,36 @@ impl Placed {
 }
 
 fn check_state(model: &Model, state: &State) -> Result<()> {
-    let arrays = [
+    check_lengths(model, state)?;
+    for (field, vectors) in vectors(state) {
+        check_vectors(field, vectors)?;
+    }
+    check_counters(state)
+}
+
+fn vectors(state: &State) -> [(&'static str, &Vec<Vec3>); 4] {
+    [
         ("position", &state.position),
         ("position_low", &state.position_low),
         ("velocity", &state.velocity),
         ("velocity_low", &state.velocity_low),
-    ];
-    for (field, array) in arrays {
-        if array.len() != model.point_count() {
+    ]
+}
+
+/// There is an entry for each point.
+fn check_lengths(model: &Model, state: &State) -> Result<()> {
+    match vectors(state).into_iter().find(|(_, vectors)| vectors.len() != model.point_count()) {
+        None => Ok(()),
+        Some((field, vectors)) => {
             let sentence =
-                format!("has {} entries, and the model has {} points", array.len(), model.point_count());
-            return Err(Error::new(Code::Conflict, sentence).at_field(field));
+                format!("has {} entries, and the model has {} points", vectors.len(), model.point_count());
+            Err(Error::new(Code::Conflict, sentence).at_field(field))
         }
-        check_vectors(field, array)?;
     }
+}
+
+/// Time and sums are numbers, and counts are not beyond what can be counted with.
+fn check_counters(state: &State) -> Result<()> {
     let LedgerSums { start, work_in, lost_in_dampers, lost_in_contact, integrator_error, suspect_steps } =
         state.ledger;
     let numbers = [

@@ -71,6 +71,17 @@ impl State {
         }
     }
 
+    /// Step and time (s) since which dt has not changed: time is their sum with whole steps. For whoever stores a state.
+    pub fn clock(&self) -> (u64, f64) {
+        self.clock
+    }
+
+    /// Sets what [`clock`](Self::clock) gives. One that does not show this state's time is started anew when a simulation
+    /// goes on from the state.
+    pub fn set_clock(&mut self, clock: (u64, f64)) {
+        self.clock = clock;
+    }
+
     /// Its step, time and sums, without a point.
     pub(crate) fn counters(&self) -> Self {
         Self::at_origin(self, 0)
@@ -232,14 +243,14 @@ impl Moment<'_> {
 }
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo): five lines that any language can repeat.
-struct Fnv(u64);
+pub(crate) struct Fnv(pub u64);
 
 impl Fnv {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    fn write(&mut self, bytes: &[u8]) {
+    pub fn write(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::run::run as record;
-use crate::args::{GeometryArgs, RunArgs, SceneArgs};
+use crate::args::{RunArgs, SceneArgs};
 use crate::console::say;
 
 /// Ten simulated seconds at real-time speed, of the jelly unless another scene was asked for.
@@ -12,20 +12,12 @@ pub fn run(scene: Option<&SceneArgs>) -> sprung::Result<()> {
     let [film, picture] = outputs(&scene.scene);
     say(format_args!("Ten seconds of {}, to {} and {}.", scene.scene, film.display(), picture.display()));
     record(&RunArgs {
-        scene,
+        scene: Some(scene.scene),
+        set: scene.set,
         output: vec![film, picture],
-        frames: None,
         seconds: Some(10.0),
         fps: Some(25.0),
-        settle: false,
-        from: None,
-        geometry: GeometryArgs::default(),
-        dry_run: false,
-        plot: None,
-        at: None,
-        size: None,
-        threads: None,
-        quiet: false,
+        ..RunArgs::default()
     })?;
     say("Try next:");
     say("  sprung scenes                        what else there is");

@@ -1,10 +1,12 @@
 //! One file per command.
 
 mod bench;
+mod checkpoints;
 mod demo;
 mod new;
 mod outputs;
 mod record;
+mod resume;
 mod run;
 mod scenes;
 mod show;

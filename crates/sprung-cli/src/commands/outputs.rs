@@ -26,6 +26,7 @@ impl<'a> Outputs<'a> {
     pub fn plan(args: &'a RunArgs, info: &RunInfo, options: &Options) -> Result<Self> {
         let exporters = args.output.iter().map(|path| exporter_for(path)).collect::<Result<Vec<_>>>()?;
         check_heeded(args, &exporters)?;
+        check_resumable(args, &exporters)?;
         let estimate = |(path, exporter): (&'a PathBuf, &&Exporter)| {
             let named = |error: Error| error.in_file(path.display().to_string());
             Ok((path.as_path(), (exporter.estimate)(info, options).map_err(named)?))
@@ -114,6 +115,7 @@ pub fn options(args: &RunArgs) -> Options {
         }),
         bodies: (!args.geometry.body.is_empty()).then(|| args.geometry.body.clone()),
         points: args.geometry.points,
+        resumable: args.checkpoint.is_some(),
     }
 }
 
@@ -148,6 +150,22 @@ fn check_heeded(args: &RunArgs, exporters: &[&Exporter]) -> Result<()> {
         return Err(of_no_use("--from", "without an output", "add -o FILE".into()));
     }
     Ok(())
+}
+
+/// In a run with checkpoints every output must be one that can be gone on with.
+fn check_resumable(args: &RunArgs, exporters: &[&Exporter]) -> Result<()> {
+    if args.checkpoint.is_none() {
+        return match args.every {
+            None => Ok(()),
+            Some(_) => {
+                Err(of_no_use("--every", "without a checkpoint", "add --checkpoint FILE.sprung".into()))
+            }
+        };
+    }
+    let Some(index) = exporters.iter().position(|exporter| exporter.resume.is_none()) else { return Ok(()) };
+    let sentence = format!("a .{} cannot be gone on with after the run was killed", exporters[index].ending);
+    let error = Error::new(Code::Unsupported, sentence).in_file(args.output[index].display().to_string());
+    Err(error.with_fix("leave out --checkpoint, or this output"))
 }
 
 fn of_no_use(option: &str, without: &str, fix: String) -> Error {

@@ -1,10 +1,13 @@
 //! The outputs of one run: every frame goes to all of them once it is known to be good.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 use sprung::{Code, Energy, Error, Params, Result, Simulation, Snapshot};
-use sprung_io::{Export, Frame, Options, RunInfo, Written};
+use sprung_io::checkpoint::Recording;
+use sprung_io::files::{is_complete, remove_spools};
+use sprung_io::{Export, Frame, Mark, Options, RunInfo, Written};
 use sprung_render::export;
 use sprung_render::plot::EnergyPlot;
 
@@ -61,6 +64,54 @@ impl Recorder {
         let plot = plot.map(|path| EnergyPlot::begin(path)).transpose()?;
         let title = format!("Energy: {}", info.title);
         Ok(Self { exports, plot, title, samples: Vec::new(), held: Vec::new(), from, frames: 0 })
+    }
+
+    /// Goes on with the files of a run that was killed, at the marks of its checkpoint. An output that has got its name
+    /// already, as the run was over, is left as it is; gives how many there are to be completed.
+    pub fn resume(recording: &Recording, info: &RunInfo) -> Result<(Self, usize)> {
+        let Recording { plan, marks } = recording;
+        let begun = SystemTime::UNIX_EPOCH + Duration::from_secs(plan.begun);
+        let is_over = |path: &Path, mark: &Mark| {
+            let is_over = plan.ended.is_some() && is_complete(path, begun);
+            if is_over {
+                // What it needed until then may be there still.
+                remove_spools(path, mark);
+            }
+            is_over
+        };
+        let mut exports = Vec::new();
+        for (path, mark) in plan.outputs.iter().map(Path::new).zip(marks) {
+            let exporter = export::exporter_for(path)?;
+            let Some(resume) = exporter.resume else { return Err(Mark::strange(path)) };
+            if !is_over(path, mark) {
+                exports.push(resume(path, info, &plan.options, mark)?);
+            }
+        }
+        let (mut plot, mut samples) = (None, Vec::new());
+        if let (Some(path), Some(mark)) = (plan.plot.as_ref().map(Path::new), marks.last())
+            && !is_over(path, mark)
+        {
+            let (resumed, so_far) = EnergyPlot::resume(path, mark)?;
+            (plot, samples) = (Some(resumed), so_far);
+        }
+        let left = exports.len() + usize::from(plot.is_some());
+        let title = format!("Energy: {}", info.title);
+        let frames = plan.recorded.saturating_sub(plan.from);
+        Ok((Self { exports, plot, title, samples, held: Vec::new(), from: plan.from, frames }, left))
+    }
+
+    /// Whether no frame is held back.
+    pub fn is_calm(&self) -> bool {
+        self.held.is_empty()
+    }
+
+    /// How far each output has got, in order; then the energy plot, if there is one.
+    pub fn marks(&mut self) -> Result<Vec<Mark>> {
+        let mut marks = self.exports.iter_mut().map(|export| export.mark()).collect::<Result<Vec<_>>>()?;
+        if let Some(plot) = &mut self.plot {
+            marks.push(plot.mark(&self.samples)?);
+        }
+        Ok(marks)
     }
 
     /// Takes the current state as frame `index`.

@@ -5,18 +5,18 @@ use std::time::Instant;
 
 use sprung::params::DT_RANGE;
 use sprung::scene::Scene;
-use sprung::{
-    Change, Code, Error, Params, Result, SettleOptions, Simulation, significant as rounded, stability,
-};
+use sprung::{Change, Code, Error, Result, SettleOptions, Simulation, significant as rounded, stability};
 use sprung_io::{RunInfo, Written, files};
 
+use super::checkpoints::Checkpoints;
 use super::outputs::{self, Outputs};
 use super::record::{Recorder, check_names};
+use super::resume;
 use super::show::describe;
 use crate::args::RunArgs;
 use crate::console::{bytes, complain, counted, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
-use crate::source;
+use crate::source::{self, Begun};
 
 /// Simulated time when nothing is said, s.
 const DEFAULT_SECONDS: f64 = 10.0;
@@ -32,10 +32,12 @@ const MAX_FRAMES: f64 = 1e8;
 
 /// Runs, and says what was done.
 pub fn run(args: &RunArgs) -> Result<()> {
+    if let Some(file) = &args.resume {
+        return resume::run(args, file);
+    }
     let interrupt = Interrupt::listen()?;
-    let (name, scene) = source::scene(&args.scene)?;
-    let mut simulation = source::simulation(&scene, args.threads)?;
-    let plan = Plan::new(args, simulation.params())?;
+    let Begun { name, scene, mut simulation } = source::begun(&args.scene(), args.threads)?;
+    let plan = Plan::new(args, &simulation)?;
     if plan.dt != simulation.params().dt {
         simulation.change(Change::Dt(plan.dt))?;
     }
@@ -48,49 +50,107 @@ pub fn run(args: &RunArgs) -> Result<()> {
     if args.dry_run {
         return dry_run(args, &plan, &name, &outputs);
     }
-    let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options, plan.from)?;
+    // Before the outputs: those of a run that can still be completed are not to be begun anew.
+    let mut checkpoints = Checkpoints::begin(args, &name, &scene, &info, &plan, &options)?;
+    let recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options, plan.from)?;
     if !args.quiet {
         plan.announce();
         outputs.announce();
     }
     warn_of_large_dt(&mut simulation);
+    if let Some(checkpoints) = &mut checkpoints {
+        checkpoints.fingerprint(&simulation);
+    }
+    let run = Run { name, plan, simulation, recorder, checkpoints, recorded: 0, settles: args.settle };
+    run.complete(args.quiet, &interrupt)
+}
 
-    let begun = Instant::now();
-    let outcome = simulate(args, &plan, &mut simulation, &mut recorder, &interrupt);
-    let simulated_in = begun.elapsed();
+/// A run that is ready to begin, or to go on.
+pub struct Run {
+    pub name: String,
+    pub plan: Plan,
+    pub simulation: Simulation,
+    pub recorder: Recorder,
+    pub checkpoints: Option<Checkpoints>,
+    /// Frames that were recorded before it was killed.
+    pub recorded: u64,
+    /// It begins by coming to rest.
+    pub settles: bool,
+}
 
-    // Whatever happened: the whole frames that there are become whole files.
-    let (written, mut errors) = recorder.finish(&interrupt, args.quiet);
-    if !args.quiet {
-        for file in &written {
-            let path = file.path.display();
-            note(format_args!("Wrote {path}: {}, {}.", counted(file.frames, "frame"), bytes(file.bytes)));
+impl Run {
+    /// Simulates what there is to simulate, completes the outputs, and says what was done.
+    pub fn complete(mut self, quiet: bool, interrupt: &Interrupt) -> Result<()> {
+        let begun_at = self.simulation.now().1;
+        let begun = Instant::now();
+        let outcome = self.simulate(quiet, interrupt);
+        let simulated_in = begun.elapsed();
+        let Self { name, plan, mut simulation, mut recorder, mut checkpoints, .. } = self;
+
+        // Whatever happened: the whole frames that there are become whole files, and until they are, what it takes to
+        // complete them is safe.
+        if let Some(checkpoints) = &mut checkpoints {
+            checkpoints.close(&outcome, &mut simulation, &mut recorder);
         }
+        let (written, mut errors) = recorder.finish(interrupt, quiet);
+        if !quiet {
+            for file in &written {
+                let path = file.path.display();
+                note(format_args!("Wrote {path}: {}, {}.", counted(file.frames, "frame"), bytes(file.bytes)));
+            }
+        }
+        if let Err(error) = outcome {
+            let stopped = error.code() == Code::Interrupted;
+            errors.insert(0, if stopped { interrupted(&written) } else { error });
+        }
+        errors.extend(checkpoints.and_then(Checkpoints::failure));
+        all_said(errors)?;
+        if !quiet {
+            let state = simulation.state();
+            let pace = (state.time - begun_at) / simulated_in.as_secs_f64().max(1e-9);
+            say(format_args!(
+                "{name}: {}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
+                counted(plan.frames + 1, "frame"),
+                counted(state.step, "step"),
+                rounded(state.time),
+                seconds(simulated_in),
+                simulation.state_hash()
+            ));
+        }
+        Ok(())
     }
-    if let Err(error) = outcome {
-        let stopped = error.code() == Code::Interrupted;
-        errors.insert(0, if stopped { interrupted(&written) } else { error });
+
+    fn simulate(&mut self, quiet: bool, interrupt: &Interrupt) -> Result<()> {
+        let Self { plan, simulation, recorder, checkpoints, .. } = self;
+        if self.settles {
+            settle(quiet, simulation, interrupt)?;
+        }
+        let bar = progress(plan.frames, "simulating", quiet);
+        bar.set_position(self.recorded);
+        for frame in self.recorded..=plan.frames {
+            // The first frame is how it begins.
+            for _ in 0..if frame == 0 { 0 } else { plan.steps_per_frame } {
+                if interrupt.came() {
+                    return Err(Error::new(Code::Interrupted, "interrupted"));
+                }
+                simulation.step(plan.dt)?;
+            }
+            recorder.record(frame, simulation)?;
+            bar.set_position(frame);
+            if let Some(checkpoints) = checkpoints {
+                checkpoints.recorded(frame, simulation, recorder);
+            }
+        }
+        recorder.settle_doubts(simulation)?;
+        bar.finish_and_clear();
+        Ok(())
     }
-    all_said(errors)?;
-    if !args.quiet {
-        let state = simulation.state();
-        let pace = state.time / simulated_in.as_secs_f64().max(1e-9);
-        say(format_args!(
-            "{name}: {}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
-            counted(plan.frames + 1, "frame"),
-            counted(state.step, "step"),
-            rounded(state.time),
-            seconds(simulated_in),
-            simulation.state_hash()
-        ));
-    }
-    Ok(())
 }
 
 /// `--at` needs a time of which a frame is written.
 fn check_times(args: &RunArgs, plan: &Plan) -> Result<()> {
     let Some(at) = args.at else { return Ok(()) };
-    let time = |frame: u64| plan.dt * (plan.steps_per_frame * frame) as f64;
+    let time = |frame: u64| plan.start + plan.dt * (plan.steps_per_frame * frame) as f64;
     let (start, end) = (time(plan.from), time(plan.frames));
     let refused = |sentence: String| Error::new(Code::OutOfRange, sentence).in_file("--at");
     if at > end + 1e-9 {
@@ -125,20 +185,23 @@ fn dry_run(args: &RunArgs, plan: &Plan, name: &str, outputs: &Outputs<'_>) -> Re
 }
 
 /// How many frames of how many steps of which length.
-struct Plan {
-    dt: f64,
-    steps_per_frame: u64,
+pub struct Plan {
+    /// Time of the first frame, s: not 0 where a run begins from a checkpoint.
+    pub start: f64,
+    pub dt: f64,
+    pub steps_per_frame: u64,
     /// Number of the last frame, and of the first that is written.
-    frames: u64,
-    from: u64,
+    pub frames: u64,
+    pub from: u64,
     /// The frame rate that dt was fitted to, and dt as it was.
-    fitted: Option<(f64, f64)>,
+    pub fitted: Option<(f64, f64)>,
     /// A film of these frames will jump.
-    jumps: bool,
+    pub jumps: bool,
 }
 
 impl Plan {
-    fn new(args: &RunArgs, params: &Params) -> Result<Self> {
+    fn new(args: &RunArgs, simulation: &Simulation) -> Result<Self> {
+        let params = simulation.params();
         let (dt, steps_per_frame) = match args.fps {
             // The largest step not above dt that divides a frame; a quotient that is whole up to rounding is whole.
             Some(fps) => {
@@ -163,7 +226,7 @@ impl Plan {
             let sentence = format!("is frame {from}, and the last one is {frames}");
             return Err(Error::new(Code::OutOfRange, sentence).in_file("--from"));
         }
-        Ok(Self { dt, steps_per_frame, frames, from, fitted, jumps })
+        Ok(Self { start: simulation.now().1, dt, steps_per_frame, frames, from, fitted, jumps })
     }
 
     fn announce(&self) {
@@ -195,41 +258,14 @@ fn info(name: &str, scene: &Scene, simulation: &Simulation, plan: &Plan) -> RunI
     }
 }
 
-fn simulate(
-    args: &RunArgs,
-    plan: &Plan,
-    simulation: &mut Simulation,
-    recorder: &mut Recorder,
-    interrupt: &Interrupt,
-) -> Result<()> {
-    if args.settle {
-        settle(args, simulation, interrupt)?;
-    }
-    let bar = progress(plan.frames, "simulating", args.quiet);
-    recorder.record(0, simulation)?;
-    for frame in 1..=plan.frames {
-        for _ in 0..plan.steps_per_frame {
-            if interrupt.came() {
-                return Err(Error::new(Code::Interrupted, "interrupted"));
-            }
-            simulation.step(plan.dt)?;
-        }
-        recorder.record(frame, simulation)?;
-        bar.set_position(frame);
-    }
-    recorder.settle_doubts(simulation)?;
-    bar.finish_and_clear();
-    Ok(())
-}
-
-fn settle(args: &RunArgs, simulation: &mut Simulation, interrupt: &Interrupt) -> Result<()> {
-    let bar = progress(SettleOptions::default().max_steps, "settling", args.quiet);
+fn settle(quiet: bool, simulation: &mut Simulation, interrupt: &Interrupt) -> Result<()> {
+    let bar = progress(SettleOptions::default().max_steps, "settling", quiet);
     let settled = simulation.settle_with(SettleOptions::default(), &mut |so_far| {
         bar.set_position(so_far.steps);
         if interrupt.came() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     bar.finish_and_clear();
-    if !args.quiet {
+    if !quiet {
         let steps = counted(settled.steps, "step");
         note(format_args!(
             "Settled in {steps}; the largest force left is {} N.",

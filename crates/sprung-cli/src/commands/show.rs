@@ -1,12 +1,15 @@
 //! `sprung show`: what a scene is, and how large dt may be.
 
+use std::path::Path;
+
 use serde::Serialize;
 use sprung::stability::{self, Limit, Setter, Sharp};
 use sprung::{Energy, Result, Simulation, significant as rounded};
+use sprung_io::checkpoint::{Recording, Stored};
 
 use crate::args::ShowArgs;
 use crate::console::{counted, grouped, say};
-use crate::source;
+use crate::source::{self, Begun};
 
 /// The answer to `show --json`. A limit that does not exist is `null`.
 #[derive(Serialize)]
@@ -38,6 +41,32 @@ struct Answer {
     energy: f64,
     energy_parts: EnergyParts,
     state_hash: String,
+    /// Where it is a checkpoint that is described.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    checkpoint: Option<OfCheckpoint>,
+}
+
+/// What a checkpoint holds besides a scene that is under way.
+#[derive(Serialize)]
+struct OfCheckpoint {
+    /// The version of the program that wrote it.
+    program: String,
+    step: u64,
+    /// s.
+    time: f64,
+    /// Of the recording that it is of, if it is of one.
+    recording: Option<OfRecording>,
+}
+
+#[derive(Serialize)]
+struct OfRecording {
+    recorded_frames: u64,
+    last_frame: u64,
+    /// Why no frame is to follow, once that is so; empty at the end of the run.
+    ended: Option<String>,
+    folder: String,
+    outputs: Vec<String>,
+    plot: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -50,8 +79,8 @@ struct EnergyParts {
 
 /// Prints the description.
 pub fn run(args: &ShowArgs) -> Result<()> {
-    let (name, scene) = source::scene(&args.scene)?;
-    let mut simulation = source::simulation(&scene, Some(1))?;
+    let (begun, checkpoint) = begun(args)?;
+    let Begun { name, scene, mut simulation } = begun;
     let energy = simulation.energy();
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
     // Of a large scene each takes about a second; so both at once.
@@ -86,13 +115,62 @@ pub fn run(args: &ShowArgs) -> Result<()> {
                 contact: energy.contact,
             },
             state_hash: format!("{:016x}", simulation.state_hash()),
+            checkpoint,
         };
         say(serde_json::to_string_pretty(&answer).unwrap_or_default());
     } else {
         say(if scene.title.is_empty() { name } else { format!("{name}: {}", scene.title) });
+        if let Some(checkpoint) = &checkpoint {
+            print_checkpoint(checkpoint);
+        }
         print(&simulation, &energy, &sharp, certified.as_ref(), every.as_ref());
     }
     Ok(())
+}
+
+/// What is to be described: a scene at its start, or what a checkpoint holds.
+fn begun(args: &ShowArgs) -> Result<(Begun, Option<OfCheckpoint>)> {
+    if !source::is_checkpoint(&args.scene.scene) || !args.scene.set.is_empty() {
+        return Ok((source::begun(&args.scene, Some(1))?, None));
+    }
+    let path = Path::new(&args.scene.scene);
+    let saved = source::read(path, &Stored::open(path)?)?;
+    let begun = source::begun_from(path, &saved, Some(1))?;
+    let recording = saved.recording.map(|Recording { plan, .. }| OfRecording {
+        recorded_frames: plan.recorded,
+        last_frame: plan.last_frame,
+        ended: plan.ended,
+        folder: plan.folder,
+        outputs: plan.outputs,
+        plot: plan.plot,
+    });
+    let state = &saved.checkpoint.state;
+    let (program, step, time) = (saved.program, state.step, state.time);
+    Ok((begun, Some(OfCheckpoint { program, step, time, recording })))
+}
+
+fn print_checkpoint(checkpoint: &OfCheckpoint) {
+    let OfCheckpoint { program, step, time, recording } = checkpoint;
+    row("checkpoint", format!("step {}, t = {} s, by sprung {program}", grouped(*step), rounded(*time)));
+    let Some(recording) = recording else { return };
+    let frames = format!("{} of {}", grouped(recording.recorded_frames), grouped(recording.last_frame + 1));
+    row(
+        "frames recorded",
+        match recording.ended.as_deref() {
+            None => frames,
+            Some("") => format!("{frames}; the run is over"),
+            Some(reason) => format!("{frames}; the run had ended: {reason}"),
+        },
+    );
+    let outputs = recording.outputs.iter().chain(&recording.plot);
+    for (number, output) in outputs.enumerate() {
+        row(if number == 0 { "outputs" } else { "" }, output.clone());
+    }
+    row("begun in", recording.folder.clone());
+}
+
+fn row(label: &str, text: String) {
+    say(format_args!("  {label:<20} {text}"));
 }
 
 fn print(
@@ -103,7 +181,6 @@ fn print(
     every: Option<&Limit>,
 ) {
     let (model, params) = (simulation.model(), simulation.params());
-    let row = |label: &str, text: String| say(format_args!("  {label:<20} {text}"));
     let fixed = fixed_points(simulation);
     row("points", format!("{}, of which {} fixed", grouped(model.point_count()), grouped(fixed)));
     row("springs", grouped(model.spring_count()));

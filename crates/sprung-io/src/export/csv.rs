@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sprung::{Result, Snapshot};
 
-use super::{Estimate, Export, Exporter, Frame, Options, Progress, RunInfo, Written};
+use super::{Estimate, Export, Exporter, Frame, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, write_error};
 
 /// `.csv`: a table of positions and velocities. Numbers read back to the same float32, times to the same float64.
@@ -15,6 +15,7 @@ pub const CSV: Exporter = Exporter {
     heeds: &[],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 /// The first line.
@@ -39,6 +40,11 @@ fn estimate(run: &RunInfo, _: &Options) -> Result<Estimate> {
     Ok(Estimate::About(HEADER.len() as u64 + run.frames * run.model.point_count() as u64 * ROW_BYTES))
 }
 
+fn resume(path: &Path, _: &RunInfo, _: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let [file] = mark.files_of(path)?;
+    Ok(Box::new(CsvExport { file: PartialFile::resume(path, file)?, frames: mark.frames }))
+}
+
 impl Export for CsvExport {
     fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
         let written =
@@ -52,6 +58,11 @@ impl Export for CsvExport {
         let path = self.file.path().to_owned();
         self.file.roll_back().map_err(|error| write_error(&path, &error))?;
         Ok(Written { bytes: self.file.finish()?, path, frames: self.frames })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let file = self.file.mark("", 0).map_err(|error| write_error(self.file.path(), &error))?;
+        Ok(Mark { frames: self.frames, files: vec![file], memory: Vec::new() })
     }
 }
 

@@ -11,8 +11,9 @@ use sprung::{Code, Error, Result};
 
 use super::numbers::{big, write_all};
 use super::pc2::cached;
-use super::{Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Written};
+use super::{Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// `.mdd`: the vertices and the time of every frame, for a mesh that the other program has already.
 pub const MDD: Exporter = Exporter {
@@ -21,6 +22,7 @@ pub const MDD: Exporter = Exporter {
     heeds: &[Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 /// The two counts.
@@ -28,6 +30,8 @@ const HEADER_BYTES: u64 = 8;
 
 struct MddExport {
     file: PartialFile,
+    /// The time of each frame, s: a checkpoint keeps them, as they lie where a checksum does not reach.
+    times: Vec<f32>,
     geometry: Geometry,
     /// Frames for whose times there is room.
     planned: u64,
@@ -39,7 +43,37 @@ fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>
     let mut file = PartialFile::create(path)?;
     let begun = begin(&mut file, run.frames);
     begun.map_err(|error| write_error(path, &error))?;
-    Ok(Box::new(MddExport { file, geometry, planned: run.frames, frames: 0 }))
+    Ok(Box::new(MddExport { file, times: Vec::new(), geometry, planned: run.frames, frames: 0 }))
+}
+
+fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let geometry = cached(run, options)?;
+    let [file] = mark.files_of(path)?;
+    let mut memory = Unpack::new(&mark.memory);
+    let times = memory.f32s()?;
+    memory.end()?;
+    // Room was left for so many times, whatever is planned now.
+    let planned = file.head.saturating_sub(HEADER_BYTES) / 4;
+    if run.frames > planned {
+        let sentence = format!("cannot be made longer: the file has room for {planned} frames");
+        return Err(Error::new(Code::Unsupported, sentence).in_file(path.display().to_string()));
+    }
+    let vertices = 12 * geometry.vertex_count() as u64;
+    let fits = file.head == HEADER_BYTES + 4 * planned
+        && mark.frames <= planned
+        && mark.frames == times.len() as u64
+        && mark.frames.checked_mul(vertices) == file.bytes.checked_sub(file.head);
+    if !fits {
+        return Err(Mark::strange(path));
+    }
+    let mut file = PartialFile::resume(path, file)?;
+    // As they were, even if the file was being completed.
+    let again = file
+        .seek(SeekFrom::Start(HEADER_BYTES))
+        .and_then(|_| write_all(&mut file, times.iter().map(|time| time.to_be_bytes())))
+        .and_then(|()| file.commit());
+    again.map_err(|error| write_error(path, &error))?;
+    Ok(Box::new(MddExport { file, times, geometry, planned, frames: mark.frames }))
 }
 
 /// Takes the room for counts and times. Not with zeros: some file systems take no room for those.
@@ -67,6 +101,7 @@ impl Export for MddExport {
             let _ = self.file.roll_back();
             return Err(write_error(self.file.path(), &error));
         }
+        self.times.push(time);
         self.frames += 1;
         Ok(())
     }
@@ -75,6 +110,14 @@ impl Export for MddExport {
         let path = self.file.path().to_owned();
         self.complete().map_err(|error| write_error(&path, &error))?;
         Ok(Written { bytes: self.file.finish()?, path, frames: self.frames })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let head = HEADER_BYTES + 4 * self.planned;
+        let file = self.file.mark("", head).map_err(|error| write_error(self.file.path(), &error))?;
+        let mut memory = Pack::new();
+        memory.f32s(&self.times);
+        Ok(Mark { frames: self.frames, files: vec![file], memory: memory.into_bytes() })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod csv;
 pub mod geometry;
+mod mark;
 mod mdd;
 mod npz;
 mod numbers;
@@ -17,11 +18,13 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use sprung::energy::Energy;
-use sprung::{Model, Params, Result, Snapshot};
+use sprung::{Code, Error, Model, Params, Result, Snapshot};
 
 pub use csv::CSV;
 pub use geometry::Geometry;
+pub use mark::{FileMark, Mark};
 pub use mdd::MDD;
 pub use npz::NPZ;
 pub use obj::OBJ;
@@ -46,8 +49,9 @@ pub struct RunInfo {
     pub frames: u64,
 }
 
-/// What a user may say about outputs.
-#[derive(Clone, Debug, PartialEq)]
+/// What a user may say about outputs. A checkpoint keeps it as JSON: a field that it does not know yet has its default.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Options {
     /// Width and height of pictures, in pixels; each format has its own default.
     pub size: Option<[u32; 2]>,
@@ -63,16 +67,27 @@ pub struct Options {
     pub bodies: Option<Vec<String>>,
     /// Whether points alone are exported, and no surfaces.
     pub points: bool,
+    /// The run takes checkpoints: what waits beside the output has a name, so that it is there after the run was killed.
+    pub resumable: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { size: None, at: None, up: Up::Y, scale: 1.0, springs: None, bodies: None, points: false }
+        Self {
+            size: None,
+            at: None,
+            up: Up::Y,
+            scale: 1.0,
+            springs: None,
+            bodies: None,
+            points: false,
+            resumable: false,
+        }
     }
 }
 
 /// The axis that points up in a file. Scenes have +Y up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Up {
     /// As in scenes, Maya, Houdini and glTF.
     #[default]
@@ -82,7 +97,7 @@ pub enum Up {
 }
 
 /// What becomes of springs in exported geometry.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Springs {
     /// They are left out.
     None,
@@ -166,6 +181,15 @@ pub trait Export {
     /// # Errors
     /// As [`frame`](Export::frame), and [`sprung::Code::Interrupted`] if `progress` broke off.
     fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written>;
+
+    /// Puts everything taken so far safely on the disk and says what it takes to go on from here with
+    /// [`Exporter::resume`]. From now on a file that is dropped unfinished stays: a checkpoint relies on it.
+    ///
+    /// # Errors
+    /// As [`frame`](Export::frame), and [`Code::Unsupported`] for a format that cannot go on where it was stopped.
+    fn mark(&mut self) -> Result<Mark> {
+        Err(Error::new(Code::Unsupported, "cannot be taken up again after the run was killed"))
+    }
 }
 
 /// Hears the share done, 0 to 1, and says whether to go on.
@@ -185,4 +209,13 @@ pub struct Exporter {
     pub estimate: fn(&RunInfo, &Options) -> Result<Estimate>,
     /// Begins a file.
     pub open: fn(&Path, &RunInfo, &Options) -> Result<Box<dyn Export>>,
+    /// Goes on with a file of a run that was killed: what came after the mark is cut off, and the rest is checked to be
+    /// what was marked. `None` for a format that cannot; a run with checkpoints then refuses it before it begins.
+    ///
+    /// What is written after that is, byte for byte, what would have been written without the interruption, even if that
+    /// came in the middle of [`Export::finish`].
+    pub resume: Option<Resume>,
 }
+
+/// See [`Exporter::resume`].
+pub type Resume = fn(&Path, &RunInfo, &Options, &Mark) -> Result<Box<dyn Export>>;

@@ -7,17 +7,20 @@
 //! A full disk costs the frame that did not fit and no other. The move takes no more room than it frees, for it goes from
 //! the end to the start and shortens the temporary file as it goes; the little that is needed besides is set aside at
 //! the start.
+//!
+//! In a run with checkpoints the temporary files have names, to be there after a kill, and are copied, not moved: a kill in
+//! the middle must leave them whole. Only where the disk is full for that they are moved after all.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use crc32fast::Hasher;
 use sprung::{Result, Vec3};
 
-use super::stored_zip::{self, StoredZip};
-use super::{Estimate, Export, Exporter, Frame, Options, Progress, RunInfo, Written};
+use super::stored_zip::{self, StoredZip, header_bytes};
+use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, spool_beside, write_error};
 
 /// `.npz`: arrays `time`, `positions` and `velocities` (frames, points, 3), `springs` and `mass`.
@@ -27,6 +30,7 @@ pub const NPZ: Exporter = Exporter {
     heeds: &[],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 /// Length of every `.npy` header: room for any shape, and a multiple of 64 as the format asks.
@@ -36,15 +40,21 @@ const PIECE_BYTES: usize = 1 << 15;
 /// Room on the disk that is set aside: for the pieces in flight and for the archive's directory.
 const RESERVE_BYTES: usize = 4 * PIECE_BYTES;
 
+/// What the temporary files hold.
+const VELOCITIES: &str = "velocities";
+const TIMES: &str = "times";
+
 struct NpzExport {
     /// The archive, whose last entry is the positions.
     archive: StoredZip<PartialFile>,
-    velocities: BufWriter<File>,
-    times: BufWriter<File>,
+    velocities: PartialFile,
+    times: PartialFile,
     /// Room on the disk, given back when the archive is completed.
     reserve: File,
     points: u64,
     frames: u64,
+    /// Where the positions' numbers begin; what lies before is filled in when the archive is completed.
+    head: u64,
     /// What the three arrays hold of whole frames.
     whole: Tallies,
 }
@@ -63,20 +73,59 @@ struct Tallies {
     velocities: Tally,
 }
 
-fn open(path: &Path, run: &RunInfo, _: &Options) -> Result<Box<dyn Export>> {
-    let mut archive = StoredZip::new(PartialFile::create(path)?);
-    let mut reserve = spool_beside(path)?;
-    let begun = begin(&mut archive, &mut reserve, run);
-    begun.map_err(|error| write_error(path, &error))?;
-    Ok(Box::new(NpzExport {
-        archive,
-        velocities: BufWriter::new(spool_beside(path)?),
-        times: BufWriter::new(spool_beside(path)?),
-        reserve,
-        points: run.model.point_count() as u64,
-        frames: 0,
-        whole: Tallies::default(),
-    }))
+fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
+    let file = PartialFile::create(path)?;
+    let [velocities, times] =
+        [VELOCITIES, TIMES].map(|part| PartialFile::spool(path, part, options.resumable));
+    Ok(Box::new(NpzExport::begin(path, run, file, velocities?, times?)?))
+}
+
+fn resume(path: &Path, run: &RunInfo, _: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let [file, velocities, times] = mark.files_of(path)?.map(|mark| PartialFile::resume(path, mark));
+    let (archive, velocities, times) = (file?, velocities?, times?);
+    let (head, frames) = (head_bytes(run), mark.frames);
+    let frame_bytes = 12 * run.model.point_count() as u64;
+    let [tally_of_positions, tally_of_velocities, tally_of_times] = mark.files_of(path)?.map(Tally::of);
+    let is = |tally: &Tally, bytes_each: u64| Some(tally.bytes) == frames.checked_mul(bytes_each);
+    let fits = mark.files[0].head == head
+        && is(&tally_of_positions, frame_bytes)
+        && is(&tally_of_velocities, frame_bytes)
+        && is(&tally_of_times, 8);
+    if !fits {
+        return Err(Mark::strange(path));
+    }
+    // Everything before the positions is written anew: completing the file had perhaps begun.
+    let mut export = NpzExport::begin(path, run, archive, velocities, times)?;
+    export.whole =
+        Tallies { times: tally_of_times, positions: tally_of_positions, velocities: tally_of_velocities };
+    export.frames = frames;
+    Ok(Box::new(export))
+}
+
+impl NpzExport {
+    /// Writes what comes before the frames, which may be there already.
+    fn begin(
+        path: &Path,
+        run: &RunInfo,
+        file: PartialFile,
+        velocities: PartialFile,
+        times: PartialFile,
+    ) -> Result<Self> {
+        let mut archive = StoredZip::new(file);
+        let mut reserve = spool_beside(path)?;
+        begin(&mut archive, &mut reserve, run).map_err(|error| write_error(path, &error))?;
+        let (points, whole) = (run.model.point_count() as u64, Tallies::default());
+        let head = head_bytes(run);
+        Ok(Self { archive, velocities, times, reserve, points, frames: 0, head, whole })
+    }
+}
+
+/// Bytes before the numbers of the positions.
+fn head_bytes(run: &RunInfo) -> u64 {
+    let arrays =
+        [("springs.npy", 8 * run.model.spring_count()), ("mass.npy", 4 * run.params.point_mass.len())];
+    let before = arrays.iter().map(|(name, bytes)| header_bytes(name) + (NPY_HEADER_BYTES + bytes) as u64);
+    before.sum::<u64>() + header_bytes("positions.npy") + NPY_HEADER_BYTES as u64
 }
 
 fn estimate(run: &RunInfo, _: &Options) -> Result<Estimate> {
@@ -123,8 +172,16 @@ impl Export for NpzExport {
     fn finish(mut self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {
         let path = self.archive.out().path().to_owned();
         let frames = self.frames;
-        let file = self.complete(progress).map_err(|error| write_error(&path, &error))?;
-        Ok(Written { bytes: file.finish()?, path, frames })
+        let (file, spools) = self.complete(progress).map_err(|error| write_error(&path, &error))?;
+        let bytes = file.finish()?;
+        // Not before: a run that is killed until then needs them.
+        spools.into_iter().for_each(PartialFile::discard);
+        Ok(Written { bytes, path, frames })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let files = self.mark_files().map_err(|error| write_error(self.archive.out().path(), &error))?;
+        Ok(Mark { frames: self.frames, files, memory: Vec::new() })
     }
 }
 
@@ -143,24 +200,38 @@ impl NpzExport {
         Ok(())
     }
 
-    fn complete(self, progress: &mut Progress<'_>) -> io::Result<PartialFile> {
-        let Self { mut archive, velocities, times, reserve, points, frames, whole } = self;
+    fn mark_files(&mut self) -> io::Result<Vec<FileMark>> {
+        self.velocities.roll_back_to(self.whole.velocities.bytes)?;
+        self.times.roll_back_to(self.whole.times.bytes)?;
+        Ok(vec![
+            self.archive.out().mark("", self.head)?,
+            self.velocities.mark(VELOCITIES, 0)?,
+            self.times.mark(TIMES, 0)?,
+        ])
+    }
+
+    /// Completes the archive, and gives it and the temporary files.
+    fn complete(self, progress: &mut Progress<'_>) -> io::Result<(PartialFile, [PartialFile; 2])> {
+        let Self { mut archive, mut velocities, mut times, reserve, points, frames, head, whole } = self;
         // Give up what does not belong to a whole frame, and the room that was set aside.
         archive.out().roll_back()?;
+        velocities.roll_back_to(whole.velocities.bytes)?;
+        times.roll_back_to(whole.times.bytes)?;
         drop(reserve);
 
-        let start = archive.out().stream_position()? - whole.positions.bytes - NPY_HEADER_BYTES as u64;
+        let start = head - NPY_HEADER_BYTES as u64;
         end_array(&mut archive, start, "<f4", &[frames, points, 3], whole.positions)?;
 
         let start = archive.begin("time.npy")?;
-        move_content(times, archive.out(), start, whole.times.bytes, &mut |_| ControlFlow::Continue(()))?;
+        let bytes = whole.times.bytes;
+        take_content(&mut times, archive.out(), start, bytes, &mut |_| ControlFlow::Continue(()))?;
         end_array(&mut archive, start, "<f8", &[frames], whole.times)?;
 
         let start = archive.begin("velocities.npy")?;
-        move_content(velocities, archive.out(), start, whole.velocities.bytes, progress)?;
+        take_content(&mut velocities, archive.out(), start, whole.velocities.bytes, progress)?;
         end_array(&mut archive, start, "<f4", &[frames, points, 3], whole.velocities)?;
 
-        archive.finish()
+        Ok((archive.finish()?, [velocities, times]))
     }
 }
 
@@ -197,6 +268,12 @@ fn end_array<W: Write + Seek>(
 }
 
 impl Tally {
+    /// That of what was marked.
+    fn of(mark: &FileMark) -> Self {
+        let bytes = mark.bytes.saturating_sub(mark.head);
+        Self { bytes, checksum: Hasher::new_with_initial_len(mark.crc32, bytes) }
+    }
+
     /// Writes numbers, given as little-endian bytes, and counts them in.
     fn write<const N: usize>(
         &mut self,
@@ -222,29 +299,53 @@ impl Tally {
     }
 }
 
-/// Moves the first `bytes` of a temporary file behind the `.npy` header that starts at `start`, last piece first, and
-/// shortens the temporary file as it goes.
-fn move_content<W: Write + Seek>(
-    spool: BufWriter<File>,
-    out: &mut W,
+/// Takes the first `bytes` of a temporary file over, behind the `.npy` header that starts at `start`: copies one with a
+/// name, which a run that is killed needs, as long as there is room; moves any other.
+fn take_content(
+    spool: &mut PartialFile,
+    out: &mut PartialFile,
     start: u64,
     bytes: u64,
     progress: &mut Progress<'_>,
 ) -> io::Result<()> {
-    // Taken apart, not flushed: after a failed write the buffer still holds what did not fit.
-    let (mut spool, _) = spool.into_parts();
-    spool.set_len(bytes)?;
+    if spool.has_name() {
+        let copied = transfer(spool, out, start, bytes, false, progress).and_then(|()| out.flush());
+        match copied {
+            Err(error)
+                if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) =>
+            {
+                out.roll_back_to(start)?;
+                out.seek(SeekFrom::Start(start))?;
+            }
+            done => return done,
+        }
+    }
+    transfer(spool, out, start, bytes, true, progress)
+}
+
+/// Writes the temporary file's content, last piece first; when it is moved, the temporary file is shortened as it goes.
+fn transfer(
+    spool: &mut PartialFile,
+    out: &mut PartialFile,
+    start: u64,
+    bytes: u64,
+    is_moved: bool,
+    progress: &mut Progress<'_>,
+) -> io::Result<()> {
     let content = start + NPY_HEADER_BYTES as u64;
     let mut piece = vec![0; PIECE_BYTES];
     let mut left = bytes;
     while left > 0 {
         let from = (left - 1) / PIECE_BYTES as u64 * PIECE_BYTES as u64;
         let piece = &mut piece[..(left - from) as usize];
-        spool.seek(SeekFrom::Start(from))?;
-        spool.read_exact(piece)?;
+        spool.read_at(from, piece)?;
         out.seek(SeekFrom::Start(content + from))?;
         out.write_all(piece)?;
-        spool.set_len(from)?;
+        if is_moved {
+            // Out of the buffer before it is gone from where it was.
+            out.flush()?;
+            spool.shorten(from)?;
+        }
         left = from;
         // Asked to break off, it goes on: the motion is all there, and what is left is a copy.
         let _ = progress(1.0 - left as f64 / bytes as f64);

@@ -7,7 +7,8 @@ use sprung::Result;
 
 use super::sequence::Sequence;
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Up, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Up,
+    Written,
 };
 
 /// `.obj`: a mesh file for each frame; numbers read back to the same float32.
@@ -17,6 +18,7 @@ pub const OBJ: Exporter = Exporter {
     heeds: &[Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 struct ObjExport {
@@ -35,6 +37,13 @@ fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>
     let geometry = geometry(run, options)?;
     let head = unit_and_axes(options);
     Ok(Box::new(ObjExport { files: Sequence::begin(path)?, geometry, head, title: one_line(&run.title) }))
+}
+
+fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let geometry = geometry(run, options)?;
+    let files = mark.sequence_of(path)?;
+    let head = unit_and_axes(options);
+    Ok(Box::new(ObjExport { files, geometry, head, title: one_line(&run.title) }))
 }
 
 /// Numbers of about nine characters; corners as long as the numbers of the vertices.
@@ -78,6 +87,10 @@ impl Export for ObjExport {
 
     fn finish(self: Box<Self>, _: &mut Progress<'_>) -> Result<Written> {
         self.files.finish()
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        Ok(Mark::of_sequence(&mut self.files))
     }
 }
 

@@ -15,9 +15,10 @@ use sprung::{Code, Error, Result};
 
 use super::numbers::{little, write_all};
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
 };
 use crate::files::{PartialFile, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// `.pc2`: the vertices of every frame, for a mesh that the other program has already.
 pub const PC2: Exporter = Exporter {
@@ -26,6 +27,7 @@ pub const PC2: Exporter = Exporter {
     heeds: &[Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 const HEADER_BYTES: u64 = 32;
@@ -44,6 +46,20 @@ fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>
     let begun = file.write_all(&header(&geometry, 0, 0)).and_then(|()| file.commit());
     begun.map_err(|error| write_error(path, &error))?;
     Ok(Box::new(Pc2Export { file, geometry, first: 0, frames: 0 }))
+}
+
+fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let geometry = cached(run, options)?;
+    let [file] = mark.files_of(path)?;
+    let mut memory = Unpack::new(&mark.memory);
+    let first = memory.u64()?;
+    memory.end()?;
+    let vertices = 12 * geometry.vertex_count() as u64;
+    if file.head != HEADER_BYTES || mark.frames.checked_mul(vertices) != file.bytes.checked_sub(HEADER_BYTES)
+    {
+        return Err(Mark::strange(path));
+    }
+    Ok(Box::new(Pc2Export { file: PartialFile::resume(path, file)?, geometry, first, frames: mark.frames }))
 }
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
@@ -99,6 +115,14 @@ impl Export for Pc2Export {
         let header = header(&self.geometry, self.first, self.frames);
         complete(&mut self.file, &header).map_err(|error| write_error(&path, &error))?;
         Ok(Written { bytes: self.file.finish()?, path, frames: self.frames })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        // The header is filled in at the end.
+        let file = self.file.mark("", HEADER_BYTES).map_err(|error| write_error(self.file.path(), &error))?;
+        let mut memory = Pack::new();
+        memory.u64(self.first);
+        Ok(Mark { frames: self.frames, files: vec![file], memory: memory.into_bytes() })
     }
 }
 

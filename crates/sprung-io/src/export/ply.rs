@@ -14,7 +14,7 @@ use super::obj::{one_line, unit_and_axes};
 use super::sequence::Sequence;
 use super::vtp::number;
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
 };
 
 /// `.ply`: a binary mesh file for each frame.
@@ -24,6 +24,7 @@ pub const PLY: Exporter = Exporter {
     heeds: &[Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 struct PlyExport {
@@ -41,6 +42,13 @@ fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>
     let geometry = geometry(run, options)?;
     let header = header(run, options, &geometry);
     Ok(Box::new(PlyExport { files: Sequence::begin(path)?, geometry, normals: Vec::new(), header }))
+}
+
+fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let geometry = geometry(run, options)?;
+    let header = header(run, options, &geometry);
+    let files = mark.sequence_of(path)?;
+    Ok(Box::new(PlyExport { files, geometry, normals: Vec::new(), header }))
 }
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
@@ -100,6 +108,10 @@ impl Export for PlyExport {
 
     fn finish(self: Box<Self>, _: &mut Progress<'_>) -> Result<Written> {
         self.files.finish()
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        Ok(Mark::of_sequence(&mut self.files))
     }
 }
 

@@ -13,6 +13,7 @@ use sprung::Result;
 
 use super::Written;
 use crate::files::{PartialFile, remove_beside, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// A sequence being written. Dropped unfinished, the files that it wrote are removed.
 #[derive(Debug)]
@@ -23,7 +24,8 @@ pub struct Sequence {
     range: Option<(u64, u64)>,
     frames: u64,
     bytes: u64,
-    is_finished: bool,
+    /// Its files stay when it is dropped: it is finished, or a checkpoint relies on them.
+    stays: bool,
 }
 
 impl Sequence {
@@ -33,7 +35,34 @@ impl Sequence {
     /// As [`PartialFile::create`].
     pub fn begin(path: &Path) -> Result<Self> {
         let lock = PartialFile::create(path)?;
-        Ok(Self { lock, range: None, frames: 0, bytes: 0, is_finished: false })
+        Ok(Self { lock, range: None, frames: 0, bytes: 0, stays: false })
+    }
+
+    /// Goes on with a sequence where it was marked. Files of later frames, which are there if the run was killed, will be
+    /// written over.
+    ///
+    /// # Errors
+    /// As [`PartialFile::create`], and for a memory that [`mark`](Self::mark) has not given.
+    pub fn resume(path: &Path, memory: &mut Unpack<'_>) -> Result<Self> {
+        let (frames, bytes) = (memory.u64()?, memory.u64()?);
+        let range = if memory.bool()? { Some((memory.u64()?, memory.u64()?)) } else { None };
+        Ok(Self { lock: PartialFile::create(path)?, range, frames, bytes, stays: true })
+    }
+
+    /// Whole frames so far, and what it takes to go on from here. From now on its files stay when it is dropped. They are
+    /// on the disk already.
+    pub fn mark(&mut self, memory: &mut Pack) -> u64 {
+        self.stays = true;
+        memory.u64(self.frames).u64(self.bytes).u8(self.range.is_some().into());
+        if let Some((first, last)) = self.range {
+            memory.u64(first).u64(last);
+        }
+        self.frames
+    }
+
+    /// Whole frames so far.
+    pub fn frames(&self) -> u64 {
+        self.frames
     }
 
     /// The name that was asked for.
@@ -74,7 +103,7 @@ impl Sequence {
     /// # Errors
     /// [`sprung::Code::Unwritable`] if what an earlier run left behind it cannot be removed.
     pub fn finish(mut self) -> Result<Written> {
-        self.is_finished = true;
+        self.stays = true;
         if let Some((_, last)) = self.range {
             self.remove(|number| number > last).map_err(|error| write_error(self.path(), &error))?;
         }
@@ -98,7 +127,7 @@ impl Sequence {
 
 impl Drop for Sequence {
     fn drop(&mut self) {
-        if let Some((first, last)) = self.range.filter(|_| !self.is_finished) {
+        if let Some((first, last)) = self.range.filter(|_| !self.stays) {
             let _ = self.remove(|number| (first..=last).contains(&number));
         }
     }

@@ -27,12 +27,19 @@ struct Entry {
 pub struct StoredZip<W> {
     out: W,
     entries: Vec<Entry>,
+    /// Where the entries that are complete end.
+    end: u64,
+}
+
+/// Bytes before the content of an entry.
+pub const fn header_bytes(name: &str) -> u64 {
+    30 + name.len() as u64 + 20
 }
 
 impl<W: Write + Seek> StoredZip<W> {
     /// An empty archive, at the start of `out`.
     pub fn new(out: W) -> Self {
-        Self { out, entries: Vec::new() }
+        Self { out, entries: Vec::new(), end: 0 }
     }
 
     /// What the archive is written to. The content of an entry is written here, after [`begin`](Self::begin).
@@ -40,9 +47,9 @@ impl<W: Write + Seek> StoredZip<W> {
         &mut self.out
     }
 
-    /// Begins an entry at the end of the archive and tells where its content starts.
+    /// Begins an entry behind the others and tells where its content starts.
     pub fn begin(&mut self, name: &'static str) -> io::Result<u64> {
-        let offset = self.out.seek(SeekFrom::End(0))?;
+        let offset = self.out.seek(SeekFrom::Start(self.end))?;
         let entry = Entry { name, offset, bytes: 0, crc32: 0 };
         self.out.write_all(&entry.local_header())?;
         self.entries.push(entry);
@@ -55,13 +62,14 @@ impl<W: Write + Seek> StoredZip<W> {
         (entry.bytes, entry.crc32) = (bytes, crc32);
         self.out.seek(SeekFrom::Start(entry.offset))?;
         self.out.write_all(&entry.local_header())?;
-        self.out.seek(SeekFrom::End(0))?;
+        self.end = entry.offset + header_bytes(entry.name) + bytes;
+        self.out.seek(SeekFrom::Start(self.end))?;
         Ok(())
     }
 
     /// Writes the directory, which ends the archive, and gives back what it was written to.
     pub fn finish(mut self) -> io::Result<W> {
-        let start = self.out.seek(SeekFrom::End(0))?;
+        let start = self.out.seek(SeekFrom::Start(self.end))?;
         for entry in &self.entries {
             self.out.write_all(&entry.directory_record())?;
         }

@@ -15,9 +15,10 @@ use sprung::{Code, Error, Result};
 
 use super::vtp::Layer;
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
 };
 use crate::files::{Folder, PartialFile, spool_beside, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// `.pvd`: for ParaView and everything else that is built on VTK.
 pub const VTK: Exporter = Exporter {
@@ -27,6 +28,7 @@ pub const VTK: Exporter = Exporter {
     heeds: &[Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 const HEAD: &str = "<?xml version=\"1.0\"?>\n\
@@ -91,6 +93,26 @@ fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>
     Ok(Box::new(VtkExport { layers, folder, collection, name: escaped(name), reserve, frames: 0 }))
 }
 
+fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let geometries = geometries(run, options)?;
+    let Some(name) = path.file_stem().and_then(|stem| stem.to_str()) else { return Err(Mark::strange(path)) };
+    let [file] = mark.files_of(path)?;
+    let collection = PartialFile::resume(path, file)?;
+    let mut reserve = spool_beside(path)?;
+    reserve.write_all(&[0xA5; RESERVE_BYTES]).map_err(|error| write_error(path, &error))?;
+    let folder = Folder::make(&path.with_file_name(name))?;
+    let mut memory = Unpack::new(&mark.memory);
+    let layers = geometries
+        .into_iter()
+        .map(|(layer, geometry)| {
+            Layer::resume(&folder.path().join(layer).with_extension("vtp"), run, geometry, &mut memory)
+        })
+        .collect::<Result<_>>()?;
+    memory.end()?;
+    let name = escaped(name);
+    Ok(Box::new(VtkExport { layers, folder, collection, name, reserve, frames: mark.frames }))
+}
+
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
     let mut bytes = (HEAD.len() + TAIL.len()) as u64;
     for (part, (name, geometry)) in geometries(run, options)?.into_iter().enumerate() {
@@ -144,6 +166,14 @@ impl Export for VtkExport {
         bytes += collection.finish()?;
         drop(folder); // goes if it is empty
         Ok(Written { path, bytes, frames })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let file = self.collection.mark("", 0);
+        let file = file.map_err(|error| write_error(self.collection.path(), &error))?;
+        let mut memory = Pack::new();
+        self.layers.iter_mut().for_each(|layer| layer.mark(&mut memory));
+        Ok(Mark { frames: self.frames, files: vec![file], memory: memory.into_bytes() })
     }
 }
 

@@ -14,6 +14,7 @@ use sprung::{Code, DVec3, Error, Model, Result, SpringReading, Vec3};
 use super::numbers::{little, write_all};
 use super::sequence::Sequence;
 use super::{Frame, Geometry, RunInfo, Written};
+use crate::pack::{Pack, Unpack};
 
 const TAIL: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
@@ -177,6 +178,20 @@ fn header(geometry: &Geometry) -> String {
 impl Layer {
     /// Begins a sequence.
     pub fn begin(path: &Path, run: &RunInfo, geometry: Geometry) -> Result<Self> {
+        Ok(Self::of(Sequence::begin(path)?, run, geometry))
+    }
+
+    /// Goes on with a sequence where it was marked.
+    pub fn resume(path: &Path, run: &RunInfo, geometry: Geometry, memory: &mut Unpack<'_>) -> Result<Self> {
+        Ok(Self::of(Sequence::resume(path, memory)?, run, geometry))
+    }
+
+    /// What it takes to go on from here.
+    pub fn mark(&mut self, memory: &mut Pack) {
+        self.files.mark(memory);
+    }
+
+    fn of(files: Sequence, run: &RunInfo, geometry: Geometry) -> Self {
         let body = geometry
             .parts()
             .iter()
@@ -185,7 +200,7 @@ impl Layer {
         let mass = geometry.points().flatten().map(|point| run.params.point_mass[point]).collect();
         let header = header(&geometry);
         let model = run.model.clone();
-        Ok(Self { files: Sequence::begin(path)?, model, geometry, header, normals: Vec::new(), body, mass })
+        Self { files, model, geometry, header, normals: Vec::new(), body, mass }
     }
 
     /// Refuses more corners than the 32 bits of a file's indices can count.

@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use sprung::Result;
 use sprung_io::files::write_error;
-use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{
+    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, PartialFile, Progress, RunInfo, Written,
+};
 
 use super::png::no_frames;
 use super::spool::Spool;
@@ -22,11 +24,11 @@ pub const GIF: Exporter = Exporter {
     heeds: &[Heeds::Size],
     estimate,
     open,
+    resume: Some(resume),
 };
 
-/// Width and height when nothing is said.
+/// Width and height unless said otherwise, pixels.
 const DEFAULT_SIZE: [u32; 2] = [800, 450];
-
 /// The shortest delay that browsers respect, hundredths of a second.
 const SHORTEST: u64 = 2;
 /// Fewer pictures than this, where there were more frames, would be no animation: then it plays in slow motion.
@@ -39,7 +41,20 @@ fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
     let size = picture_size(path, options, DEFAULT_SIZE)?;
-    Ok(Box::new(Animation { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
+    let file = PartialFile::create(path)?;
+    Ok(Box::new(Animation { file, spool: Spool::new(path, info, size, options.resumable)?, size }))
+}
+
+/// Of the animation itself nothing is written before all frames are there, so there is nothing to go on with but them.
+fn resume(path: &Path, info: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
+    let [file, frames] = mark.files_of(path)?;
+    let file = PartialFile::resume(path, file)?;
+    let spool = Spool::resume(path, info, size, frames, &mark.memory)?;
+    if spool.times().len() as u64 != mark.frames {
+        return Err(Mark::strange(path));
+    }
+    Ok(Box::new(Animation { file, spool, size }))
 }
 
 struct Animation {
@@ -86,7 +101,15 @@ impl Export for Animation {
                 go_on(progress((index + 1) as f64 / frames.len() as f64), &path)
             },
         )?;
-        writer.finish()
+        let written = writer.finish()?;
+        spool.discard();
+        Ok(written)
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let file = self.file.mark("", 0).map_err(|error| write_error(self.file.path(), &error))?;
+        let (frames, memory) = self.spool.mark()?;
+        Ok(Mark { frames: self.spool.times().len() as u64, files: vec![file, frames], memory })
     }
 }
 

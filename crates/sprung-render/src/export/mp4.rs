@@ -14,8 +14,15 @@ use super::spool::Spool;
 use super::{about, go_on, picture_size};
 
 /// A film.
-pub const MP4: Exporter =
-    Exporter { ending: "mp4", description: "a film (needs ffmpeg)", heeds: &[Heeds::Size], estimate, open };
+/// What ffmpeg has been given cannot be taken back, so a film is not resumed.
+pub const MP4: Exporter = Exporter {
+    ending: "mp4",
+    description: "a film (needs ffmpeg)",
+    heeds: &[Heeds::Size],
+    estimate,
+    open,
+    resume: None,
+};
 
 /// Width and height when nothing is said.
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
@@ -35,7 +42,7 @@ fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export
     check_ffmpeg(path)?;
     // The colour of two by two pixels is stored together, so both sides must be even.
     let size = picture_size(path, options, DEFAULT_SIZE)?.map(|side| side & !1);
-    Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info, size)?, size }))
+    Ok(Box::new(Film { file: PartialFile::create(path)?, spool: Spool::new(path, info, size, false)?, size }))
 }
 
 /// Whether there is an ffmpeg that can make a film of `path`.

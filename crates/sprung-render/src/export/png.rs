@@ -5,7 +5,10 @@ use std::path::Path;
 
 use sprung::{Code, Error, Params, Result, Snapshot};
 use sprung_io::files::write_error;
-use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{
+    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, Pack, PartialFile, Progress, RunInfo, Unpack,
+    Written,
+};
 
 use super::{about, go_on, picture_size};
 use crate::image::Image;
@@ -19,6 +22,7 @@ pub const PNG: Exporter = Exporter {
     heeds: &[Heeds::Size, Heeds::At],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 /// Width and height when nothing is said.
@@ -37,7 +41,28 @@ fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export
         at: options.at,
         motion: Motion::new(info, size),
         chosen: None,
+        frames: 0,
     }))
+}
+
+fn resume(path: &Path, info: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let size = picture_size(path, options, DEFAULT_SIZE)?;
+    let [file] = mark.files_of(path)?;
+    let mut unpack = Unpack::new(&mark.memory);
+    let motion = Motion::unpack(info, size, &mut unpack)?;
+    let chosen = match unpack.bool()? {
+        true => Some((unpack.snapshot()?, unpack.params()?)),
+        false => None,
+    };
+    unpack.end()?;
+    let points = info.model.point_count();
+    if let Some((snapshot, params)) = &chosen
+        && (snapshot.positions.len() != points || params.validate(&info.model).is_err())
+    {
+        return Err(Mark::strange(path));
+    }
+    let file = PartialFile::resume(path, file)?;
+    Ok(Box::new(Picture { file, info: info.clone(), at: options.at, motion, chosen, frames: mark.frames }))
 }
 
 struct Picture {
@@ -46,6 +71,8 @@ struct Picture {
     at: Option<f64>,
     motion: Motion,
     chosen: Option<(Snapshot, Params)>,
+    /// Looked at so far.
+    frames: u64,
 }
 
 impl Export for Picture {
@@ -62,6 +89,7 @@ impl Export for Picture {
             }
             chosen => *chosen = Some((frame.snapshot.clone(), frame.params.clone())),
         }
+        self.frames += 1;
         Ok(())
     }
 
@@ -76,6 +104,17 @@ impl Export for Picture {
         write_png(&mut file, &image).map_err(|error| write_error(&path, &error))?;
         let bytes = file.finish()?;
         Ok(Written { path, bytes, frames: 1 })
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let file = self.file.mark("", 0).map_err(|error| write_error(self.file.path(), &error))?;
+        let mut pack = Pack::new();
+        self.motion.pack(&mut pack);
+        pack.u8(self.chosen.is_some().into());
+        if let Some((snapshot, params)) = &self.chosen {
+            pack.snapshot(snapshot).params(params);
+        }
+        Ok(Mark { frames: self.frames, files: vec![file], memory: pack.into_bytes() })
     }
 }
 

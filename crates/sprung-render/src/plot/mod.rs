@@ -6,10 +6,10 @@ mod sheet;
 use std::io::Write;
 use std::path::Path;
 
-use sprung::energy::Energy;
+use sprung::energy::{Energy, LedgerSums};
 use sprung::{Code, Error, Result};
 use sprung_io::files::write_error;
-use sprung_io::{PartialFile, Written};
+use sprung_io::{Mark, Pack, PartialFile, Unpack, Written};
 
 use crate::export::write_png;
 pub use chart::{Chart, Curve};
@@ -35,6 +35,33 @@ impl EnergyPlot {
         Ok(Self { file: PartialFile::create(path)?, is_vector })
     }
 
+    /// Goes on with the plot of a run that was killed, and gives its samples until the mark.
+    ///
+    /// # Errors
+    /// As [`PartialFile::resume`].
+    pub fn resume(path: &Path, mark: &Mark) -> Result<(Self, Vec<(f64, Energy)>)> {
+        let is_vector = ending(path)? == "svg";
+        let [file] = mark.files_of(path)?;
+        let numbers = Unpack::new(&mark.memory).f64s()?;
+        let samples: Vec<_> = numbers.chunks_exact(NUMBERS).map(sample).collect();
+        if samples.len() as u64 != mark.frames || numbers.len() % NUMBERS != 0 {
+            return Err(Mark::strange(path));
+        }
+        Ok((Self { file: PartialFile::resume(path, file)?, is_vector }, samples))
+    }
+
+    /// What it takes to go on with this plot, of these samples, after a kill.
+    ///
+    /// # Errors
+    /// [`Code::Unwritable`], if the disk is full.
+    pub fn mark(&mut self, samples: &[(f64, Energy)]) -> Result<Mark> {
+        let file = self.file.mark("", 0).map_err(|error| write_error(self.file.path(), &error))?;
+        let numbers: Vec<f64> = samples.iter().flat_map(numbers).collect();
+        let mut pack = Pack::new();
+        pack.f64s(&numbers);
+        Ok(Mark { frames: samples.len() as u64, files: vec![file], memory: pack.into_bytes() })
+    }
+
     /// Draws the energies of a run: (time in s, energy in J) for each sample.
     ///
     /// # Errors
@@ -51,6 +78,32 @@ impl EnergyPlot {
         let bytes = file.finish()?;
         Ok(Written { path, bytes, frames: samples.len() as u64 })
     }
+}
+
+/// Numbers in a sample.
+const NUMBERS: usize = 11;
+
+/// A sample as numbers. How long it was suspect is a count, and small.
+fn numbers((time, energy): &(f64, Energy)) -> [f64; NUMBERS] {
+    let Energy { kinetic, gravitational, elastic, contact, sums } = *energy;
+    let LedgerSums { start, work_in, .. } = sums;
+    let (dampers, contacts) = (sums.lost_in_dampers, sums.lost_in_contact);
+    let (error, suspect) = (sums.integrator_error, sums.suspect_steps as f64);
+    [*time, kinetic, gravitational, elastic, contact, start, work_in, dampers, contacts, error, suspect]
+}
+
+/// The other way round.
+fn sample(numbers: &[f64]) -> (f64, Energy) {
+    let sums = LedgerSums {
+        start: numbers[5],
+        work_in: numbers[6],
+        lost_in_dampers: numbers[7],
+        lost_in_contact: numbers[8],
+        integrator_error: numbers[9],
+        suspect_steps: numbers[10] as u64,
+    };
+    let [kinetic, gravitational, elastic, contact] = [numbers[1], numbers[2], numbers[3], numbers[4]];
+    (numbers[0], Energy { kinetic, gravitational, elastic, contact, sums })
 }
 
 fn ending(path: &Path) -> Result<String> {
@@ -101,8 +154,6 @@ fn curves(samples: &[(f64, Energy)]) -> Vec<Curve> {
 
 #[cfg(test)]
 mod tests {
-    use sprung::energy::LedgerSums;
-
     use super::*;
 
     fn samples() -> Vec<(f64, Energy)> {

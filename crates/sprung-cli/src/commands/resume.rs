@@ -1,0 +1,135 @@
+//! `sprung run --resume`: complete a run that was killed, to the same bytes as if it had not been.
+
+use std::path::Path;
+
+use sprung::{Code, Error, Result, Simulation, significant as rounded};
+use sprung_io::RunInfo;
+use sprung_io::checkpoint::{Keeper, Plan as Recorded, Recording, Saved};
+
+use super::checkpoints::Checkpoints;
+use super::record::Recorder;
+use super::run::{Plan, Run};
+use crate::args::{self, RunArgs};
+use crate::console::{counted, note, say};
+use crate::interrupt::Interrupt;
+use crate::source::{self, Begun};
+
+/// Goes on with the run that a checkpoint is of.
+pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
+    let interrupt = Interrupt::listen()?;
+    let (keeper, stored) = Keeper::resume(file)?;
+    let mut saved = source::read(file, &stored)?;
+    let named = |error: Error| error.in_file(file.display().to_string());
+    let Some(mut recording) = saved.recording.take() else {
+        let error = Error::new(Code::Conflict, "holds a simulation, and no run that could be completed");
+        let fix = format!("`sprung run {} -o NAME` records one that begins with it", file.display());
+        return Err(named(error.with_fix(fix)));
+    };
+    check(&recording).map_err(named)?;
+    let Begun { name, simulation, .. } = source::begun_from(file, &saved, args.threads)?;
+    lengthen(args, &mut recording.plan, &simulation).map_err(named)?;
+
+    let plan = &recording.plan;
+    let info = RunInfo {
+        scene: name.clone(),
+        title: plan.title.clone(),
+        model: simulation.model().clone(),
+        params: simulation.params().clone(),
+        frame_time: simulation.params().dt * plan.steps_per_frame as f64,
+        frames: plan.last_frame + 1 - plan.from,
+    };
+    let resumed = Recorder::resume(&recording, &info);
+    let (recorder, left) = resumed.map_err(|error| match error.fix() {
+        // Where the files are is the likeliest thing to be wrong.
+        None => error.with_fix(format!("the run was started in {}", plan.folder)),
+        Some(_) => error,
+    })?;
+    if !args.quiet {
+        tell(file, &saved, plan);
+    }
+    if plan.ended.is_some() && left == 0 {
+        say(format_args!("{name}: the run is over and its files are complete; there is nothing left to do"));
+        return Ok(());
+    }
+    let every = args.every.map_or_else(|| args::every(&plan.every), Ok);
+    let every =
+        every.map_err(|_| named(Error::new(Code::Unreadable, "does not say how often one is taken")))?;
+    let recorded = match plan.ended {
+        Some(_) => plan.last_frame + 1, // no frame follows
+        None => plan.recorded,
+    };
+    let frames = Plan {
+        start: 0.0,
+        dt: simulation.params().dt,
+        steps_per_frame: plan.steps_per_frame,
+        frames: plan.last_frame,
+        from: plan.from,
+        fitted: None,
+        jumps: false,
+    };
+    // Completing files needs no further checkpoint: this one says all there is to know.
+    let goes_on = plan.ended.is_none();
+    let checkpoints = goes_on.then(|| Checkpoints::resume(keeper, &saved, plan.clone(), every));
+    let run = Run { name, plan: frames, simulation, recorder, checkpoints, recorded, settles: false };
+    run.complete(args.quiet, &interrupt)
+}
+
+/// What a checkpoint must say of a run before anything is done by it.
+fn check(recording: &Recording) -> Result<()> {
+    let Recording { plan, marks } = recording;
+    let damaged = |what: &str| Err(Error::new(Code::Unreadable, format!("is damaged: {what}")));
+    if marks.len() != plan.outputs.len() + usize::from(plan.plot.is_some()) {
+        return damaged("it does not say of every output how far it had got");
+    }
+    const MOST: u64 = 100_000_000;
+    if plan.last_frame > MOST || plan.recorded == 0 || plan.recorded > plan.last_frame + 1 {
+        return damaged("the numbers of its frames cannot be");
+    }
+    if plan.from > plan.last_frame || plan.steps_per_frame == 0 || plan.steps_per_frame > MOST * 1000 {
+        return damaged("the numbers of its frames cannot be");
+    }
+    Ok(())
+}
+
+/// Another last frame, if one was asked for.
+fn lengthen(args: &RunArgs, plan: &mut Recorded, simulation: &Simulation) -> Result<()> {
+    let frame_time = simulation.params().dt * plan.steps_per_frame as f64;
+    let wanted = args.seconds.map(|seconds| (seconds / frame_time - 1e-9).ceil().min(1e9) as u64);
+    let Some(last_frame) = args.frames.or(wanted).filter(|&frames| frames != plan.last_frame) else {
+        return Ok(());
+    };
+    if plan.ended.is_some() {
+        let error = Error::new(Code::Conflict, "holds a run that is over, so it cannot be made longer");
+        return Err(error.with_fix("`sprung run` with this checkpoint and -o goes on in other files"));
+    }
+    if last_frame + 1 < plan.recorded || last_frame < plan.from || last_frame > 100_000_000 {
+        let sentence = format!(
+            "holds {} of a run, and it was asked to end with frame {last_frame}",
+            counted(plan.recorded, "frame")
+        );
+        return Err(Error::new(Code::OutOfRange, sentence));
+    }
+    plan.last_frame = last_frame;
+    Ok(())
+}
+
+/// Says where it goes on.
+fn tell(file: &Path, saved: &Saved, plan: &Recorded) {
+    let time = rounded(saved.checkpoint.state.time);
+    let of = plan.last_frame + 1;
+    note(format_args!(
+        "Going on with {}: {} of {of} at t = {time} s.",
+        file.display(),
+        counted(plan.recorded, "frame")
+    ));
+    if let Some(reason) = plan.ended.as_ref().filter(|reason| !reason.is_empty()) {
+        note(format_args!("The run had ended: {reason}. Its files are completed."));
+    }
+    let here = env!("CARGO_PKG_VERSION");
+    if saved.program != here {
+        note(format_args!(
+            "It was begun by sprung {}, and this is {here}: from here on the bits are those of this version.",
+            saved.program
+        ));
+    }
+}

@@ -1,0 +1,139 @@
+//! Checkpoints: a running simulation in a file, and how far its outputs had got.
+//!
+//! The file begins with eight bytes by which it is known, the version of the format, the number of sections and a checksum
+//! of these. Each section has a name, a length, a CRC-32 of its content and one of this header. CRC-32 finds every change
+//! within 32 bits in a row, and so every flipped byte, whatever the length; a cut is found by the lengths. Positions and
+//! velocities are held against the 64-bit hash of the state besides. All numbers are little-endian.
+//!
+//! What version 1 holds, section by section, is in [`sections`], and never changes: a later version gets another number,
+//! and this one is still read. See also `docs/checkpoints.md`.
+
+mod container;
+mod keeper;
+mod sections;
+
+use std::io::{Read, Write};
+
+use serde::{Deserialize, Serialize};
+use sprung::scene::Scene;
+use sprung::{Checkpoint, Code, Error, Model, Result, Simulation};
+
+use crate::export::{Mark, Options};
+
+pub use container::MAGIC;
+pub(crate) use keeper::taken;
+pub use keeper::{Keeper, Stored};
+
+/// The ending of the names of checkpoints, without the dot.
+pub const ENDING: &str = "sprung";
+
+/// The newest version of the format, which is the one that is written.
+pub const VERSION: u32 = 1;
+
+/// What a checkpoint file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Saved {
+    /// The version of the program that wrote it, such as `0.1.0`.
+    pub program: String,
+    /// The scene's name, such as `jelly`.
+    pub scene_name: String,
+    /// The scene, as TOML.
+    pub scene: String,
+    /// [`Model::fingerprint`] of the model that the scene was built into.
+    pub fingerprint: u64,
+    /// The simulation.
+    pub checkpoint: Checkpoint,
+    /// The recording that it is a moment of, if it is one.
+    pub recording: Option<Recording>,
+}
+
+/// How far a recording had got: what it takes to complete it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// What was to be done.
+    pub plan: Plan,
+    /// How far each output had got, in the order of [`Plan::outputs`]; then the energy plot, if there is one.
+    pub marks: Vec<Mark>,
+}
+
+/// What a recording was to do, and why it ended if it has. Kept as JSON: a field that is not there has its default.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Plan {
+    /// The scene's title.
+    pub title: String,
+    /// Names of the outputs, as they were typed.
+    pub outputs: Vec<String>,
+    /// Name of the energy plot.
+    pub plot: Option<String>,
+    /// The folder that names without one are to be looked for in.
+    pub folder: String,
+    /// What was said about outputs.
+    pub options: Options,
+    /// Steps from one frame to the next.
+    pub steps_per_frame: u64,
+    /// The number of the last frame.
+    pub last_frame: u64,
+    /// Whole frames recorded so far, those before the first that is written too: the number of the next.
+    pub recorded: u64,
+    /// The first frame that is written.
+    pub from: u64,
+    /// How often a checkpoint was to be taken, as it was typed.
+    pub every: String,
+    /// When the recording began, s since 1970.
+    pub begun: u64,
+    /// Once no frame is to follow: why, in a phrase. What is left to do then is to complete the files.
+    pub ended: Option<String>,
+}
+
+impl Saved {
+    /// A simulation as it is now.
+    pub fn new(scene_name: &str, scene: &Scene, simulation: &mut Simulation) -> Self {
+        Self {
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            scene_name: scene_name.to_owned(),
+            scene: scene.to_toml(),
+            fingerprint: simulation.model().fingerprint(),
+            checkpoint: simulation.checkpoint(),
+            recording: None,
+        }
+    }
+
+    /// Writes the file's bytes.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_to(&self, out: &mut impl Write) -> std::io::Result<()> {
+        sections::write(self, out)
+    }
+
+    /// Reads a file of so many bytes. That its values fit each other is found out by [`simulation`](Self::simulation).
+    ///
+    /// # Errors
+    /// [`Code::Unreadable`] if it is no checkpoint, cut off, or damaged in some section, which is named;
+    /// [`Code::Unsupported`] for a version that this program does not know; [`Code::TooLarge`] if there is no memory.
+    pub fn read_from(file: &mut impl Read, bytes: u64) -> Result<Self> {
+        sections::read(file, bytes)
+    }
+
+    /// The scene.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`].
+    pub fn scene(&self) -> Result<Scene> {
+        Scene::parse(&self.scene, "the scene in the checkpoint")
+    }
+
+    /// Goes on with the simulation, on a model that its scene was built into.
+    ///
+    /// # Errors
+    /// [`Code::Conflict`] if the scene was built into another model, or the parts do not fit it, and as
+    /// [`Simulation::resume_from`].
+    pub fn simulation(&self, model: Model) -> Result<Simulation> {
+        if model.fingerprint() != self.fingerprint {
+            let sentence = "the scene in it is not the one that its points and springs are of";
+            return Err(Error::new(Code::Conflict, sentence));
+        }
+        Simulation::resume_from(model, self.checkpoint.clone())
+    }
+}

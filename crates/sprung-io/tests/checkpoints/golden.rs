@@ -1,0 +1,58 @@
+//! Version 1 of the format is pinned for ever: a file of it, committed as hexadecimal digits, is read as what it was.
+
+use std::path::Path;
+
+use crate::{bytes_of, read, resumed, small};
+
+/// The hash of the state in it.
+const HASH: u64 = 5_755_488_279_710_336_635;
+
+fn path() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/checkpoints/version-1.hex")
+}
+
+fn hex(bytes: &[u8]) -> String {
+    let digits: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    digits.as_bytes().chunks(96).map(|line| String::from_utf8_lossy(line).into_owned() + "\n").collect()
+}
+
+fn from_hex(text: &str) -> Vec<u8> {
+    let digits: Vec<char> = text.chars().filter(char::is_ascii_hexdigit).collect();
+    let byte = |pair: &[char]| u8::from_str_radix(&pair.iter().collect::<String>(), 16).expect("digits");
+    digits.chunks(2).map(byte).collect()
+}
+
+/// The file was written once, with the first program that could. If this fails, checkpoints that people have cannot be
+/// read any more: the reader is to be mended, not the file.
+#[test]
+fn version_1_is_read_for_ever() {
+    let golden = from_hex(&std::fs::read_to_string(path()).expect("it is committed"));
+    let saved = read(&golden).expect("version 1 is read");
+    // Some of it in numbers, so that it does not depend on how this test makes the other.
+    let (state, params) = (&saved.checkpoint.state, &saved.checkpoint.params);
+    assert_eq!((state.step, state.time, state.clock()), (7, 0.06125, (3, 0.03)));
+    assert_eq!(state.hash(), HASH);
+    assert_eq!((params.dt, params.substeps, params.gravity.y), (0.0078125, 2, -3.0));
+    assert_eq!((params.grabs[0].point, params.planes.len(), params.carried[&2].x), (1, 2, 0.5));
+    assert_eq!((*params.spring_cut).as_slice(), [false, true]);
+    assert_eq!(params.spring_rest_length[0], 0.75);
+    assert_eq!(saved, small());
+    resumed(&saved).expect("it goes on").steps(10).expect("it is stable");
+}
+
+/// As long as version 1 is the one that is written, it is written like this, but for the JSON of the plan, which may gain
+/// fields. `SPRUNG_UPDATE_GOLDENS=1` makes the file, for a *new* version.
+#[test]
+fn version_1_is_written_the_same() {
+    if std::env::var_os("SPRUNG_UPDATE_GOLDENS").is_some() {
+        std::fs::write(path(), hex(&bytes_of(&small()))).expect("it can be written");
+    }
+    let before_the_plan = |bytes: &[u8]| {
+        let name = *b"run\0\0\0\0\0\0\0\0\0\0\0\0\0";
+        let plan = bytes.windows(16).position(|window| window == name).expect("there is a plan");
+        hex(&bytes[..plan])
+    };
+    let golden = from_hex(&std::fs::read_to_string(path()).expect("it is committed"));
+    let same = before_the_plan(&bytes_of(&small())) == before_the_plan(&golden);
+    assert!(same, "the same checkpoint has other bytes: give the format a new version");
+}
