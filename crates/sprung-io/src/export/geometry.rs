@@ -124,6 +124,16 @@ impl Geometry {
         Ok(geometry)
     }
 
+    /// What becomes of springs: what the user says, or else lines where a body that is exported has no surface.
+    pub fn springs_or_default(run: &RunInfo, options: &Options) -> Springs {
+        let is_chosen = |name: &String| options.bodies.as_ref().is_none_or(|bodies| bodies.contains(name));
+        let has_surface = |body| run.model.surfaces().iter().any(|surface| surface.body == body);
+        let mut bodies = run.model.bodies().iter().enumerate();
+        let any_bare =
+            options.points || bodies.any(|(index, body)| is_chosen(&body.name) && !has_surface(index));
+        options.springs.unwrap_or(if any_bare { Springs::Lines } else { Springs::None })
+    }
+
     /// The parts, in order; together they hold every vertex.
     pub fn parts(&self) -> &[Part] {
         &self.parts

@@ -3,7 +3,9 @@
 mod csv;
 pub mod geometry;
 mod npz;
+mod spool;
 mod stored_zip;
+mod usd;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -15,6 +17,7 @@ use sprung::{Model, Params, Result, Snapshot};
 pub use csv::CSV;
 pub use geometry::Geometry;
 pub use npz::NPZ;
+pub use usd::{USDA, USDC, USDZ};
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]
