@@ -1,7 +1,9 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
+mod colour;
 mod csv;
 pub mod geometry;
+mod gltf;
 mod npz;
 mod spool;
 mod stored_zip;
@@ -16,6 +18,7 @@ use sprung::{Model, Params, Result, Snapshot};
 
 pub use csv::CSV;
 pub use geometry::Geometry;
+pub use gltf::GLB;
 pub use npz::NPZ;
 pub use usd::{USDA, USDC, USDZ};
 

@@ -37,9 +37,9 @@ impl Spool {
 
     /// Puts its whole frames at the end of `out`, last piece first, and shortens the temporary file as it goes: it takes no
     /// more room on the disk than it frees.
-    pub fn move_to(self, out: &mut (impl Write + Seek), moved: &mut dyn FnMut(u64)) -> io::Result<()> {
-        // Taken apart, not flushed: after a failed write the buffer still holds what did not fit.
-        let (mut file, _) = self.file.into_parts();
+    pub fn move_to(&mut self, out: &mut (impl Write + Seek), moved: &mut dyn FnMut(u64)) -> io::Result<()> {
+        // A second handle, not a flush: after a failed write the buffer still holds what did not fit.
+        let mut file = self.file.get_ref().try_clone()?;
         file.set_len(self.whole)?;
         let start = out.seek(SeekFrom::End(0))?;
         let mut piece = vec![0; PIECE_BYTES];

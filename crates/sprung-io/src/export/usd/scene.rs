@@ -5,6 +5,7 @@ use std::ops::Range;
 use sprung::{Result, Vec3};
 
 use super::layer::{Attribute, Layer, Prim, Value, identifier};
+use crate::export::colour::linear;
 use crate::export::geometry::{Part, SPRING_COLOUR, tube_radius};
 use crate::export::{Frame, Geometry, Options, RunInfo, Up};
 
@@ -184,13 +185,6 @@ fn colour(srgb: [u8; 3]) -> Attribute {
     Attribute::varying("primvars:displayColor", "color3f[]", linear).interpolated("constant")
 }
 
-/// The linear value of an sRGB one, to four decimals: the same on every system.
-pub fn linear(srgb: u8) -> f32 {
-    let s = f64::from(srgb) / 255.0;
-    let linear = if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
-    ((linear * 1e4).round() / 1e4) as f32
-}
-
 /// Frames in a second; a whole number where it is one up to the rounding of the frame's time.
 fn rate(frame_time: f64) -> f64 {
     let rate = 1.0 / frame_time;
@@ -209,12 +203,5 @@ mod tests {
             assert_eq!(rate((1.0 / (fps * steps)) * steps), fps);
         }
         assert_eq!(rate(0.07), 1.0 / 0.07);
-    }
-
-    #[test]
-    fn colours_are_linear() {
-        assert_eq!([0, 255].map(linear), [0.0, 1.0]);
-        assert_eq!(linear(128), 0.2159); // ((128/255 + 0.055)/1.055)^2.4 = 0.21586
-        assert_eq!(linear(10), 0.003); // 10/255/12.92 = 0.003035
     }
 }

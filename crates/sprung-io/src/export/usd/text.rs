@@ -86,7 +86,7 @@ impl Text {
         };
         let mut columns: Vec<Option<Spool>> = columns.into_iter().map(Some).collect();
         let written = write_layer(&mut file, layer, whole, &mut |out, column| {
-            columns[column].take().map_or(Ok(()), |spool| spool.move_to(out, &mut moved))
+            columns[column].take().map_or(Ok(()), |mut spool| spool.move_to(out, &mut moved))
         });
         written.map_err(|error| write_error(file.path(), &error))?;
         Ok((file.finish()?, whole.count))
