@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::builder::RangedU64ValueParser;
-use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use sprung_io::export::geometry::SCALE_RANGE;
 use sprung_render::export::{EXPORTERS, SIZE_RANGE};
 
 /// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
@@ -125,12 +126,61 @@ pub struct RunArgs {
     /// Width and height of pictures in pixels, such as 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
+    /// Write no frame before this one; the run starts at 0 all the same
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    pub from: Option<u64>,
+    /// What leaves of the geometry.
+    #[command(flatten)]
+    pub geometry: GeometryArgs,
+    /// Say what would be simulated and written, and do neither
+    #[arg(long)]
+    pub dry_run: bool,
     /// Worker threads, the most that are used; the result is the same for any number [default: one for each processor]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
     /// No progress bar and no summary
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// What of the geometry is exported, and how.
+#[derive(Clone, Debug, Default, Args)]
+pub struct GeometryArgs {
+    /// The axis that points up in exported geometry: z turns (x, y, z) into (x, -z, y) [default: y, as in scenes]
+    #[arg(long, value_name = "AXIS", ignore_case = true)]
+    pub up: Option<Axis>,
+    /// Units of exported geometry per metre, such as 100 for centimetres [default: 1]
+    #[arg(long, value_name = "UNITS", allow_negative_numbers = true, value_parser = scale)]
+    pub scale: Option<f64>,
+    /// What becomes of springs in exported geometry [default: lines in a .pvd, none elsewhere]
+    #[arg(long, value_name = "STYLE")]
+    pub springs: Option<SpringStyle>,
+    /// Export this body alone; may be given several times [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub body: Vec<String>,
+    /// Export points alone, without surfaces
+    #[arg(long)]
+    pub points: bool,
+}
+
+/// The axis that points up.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Axis {
+    /// As in scenes, Houdini, Maya and three.js
+    Y,
+    /// As in Blender and Unreal
+    Z,
+}
+
+/// What becomes of springs.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum SpringStyle {
+    /// Left out
+    None,
+    /// Lines between points
+    Lines,
+    /// Six-sided tubes, to be rendered; lines in a .pvd
+    Tubes,
 }
 
 /// Arguments of `bench`.
@@ -165,6 +215,12 @@ fn positive(text: &str) -> Result<f64, String> {
     let allowed = 1e-6..=1e9;
     let value = finite(text)?;
     if allowed.contains(&value) { Ok(value) } else { Err("it must be from 1e-6 to 1e9".to_owned()) }
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    let (low, high) = (SCALE_RANGE.start(), SCALE_RANGE.end());
+    if SCALE_RANGE.contains(&value) { Ok(value) } else { Err(format!("it must be from {low} to {high}")) }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

@@ -38,14 +38,8 @@ impl PartialFile {
     /// [`Code::Unwritable`], naming the file: its folder is missing or closed to us, it or its partial file is
     /// there and no regular file, or it is being written already.
     pub fn create(path: &Path) -> Result<Self> {
-        if path.is_dir() {
-            return Err(unwritable(path, "cannot be written: it is a folder").with_fix("give a file's name"));
-        }
         let target = target_of(path)?;
-        let Some(name) = target.file_name() else {
-            return Err(unwritable(path, "cannot be written: it is not a file's name"));
-        };
-        let mut name = name.to_owned();
+        let mut name = target.file_name().unwrap_or_default().to_owned();
         name.push(".partial");
         let partial = target.with_file_name(name);
         let file = open_locked(&partial).map_err(|error| match error.kind() {
@@ -98,6 +92,30 @@ impl PartialFile {
         let result = file.set_len(self.committed).and_then(|()| file.seek(SeekFrom::Start(self.committed)));
         self.writer = Some(BufWriter::with_capacity(BUFFER_BYTES, file));
         result.map(|_| ())
+    }
+
+    /// Moves all that lies from `end` on down to `start`, and cuts the file to its new length. Takes no room.
+    ///
+    /// # Errors
+    /// As reading and writing do.
+    pub fn close_gap(&mut self, start: u64, end: u64) -> io::Result<()> {
+        self.flush()?;
+        let file = self.writer().get_mut();
+        let gap = end.saturating_sub(start);
+        if gap == 0 {
+            return Ok(());
+        }
+        let (mut place, length) = (end, file.metadata()?.len());
+        let mut piece = vec![0; BUFFER_BYTES];
+        while place < length {
+            let bytes = (length - place).min(BUFFER_BYTES as u64) as usize;
+            file.seek(SeekFrom::Start(place))?;
+            file.read_exact(&mut piece[..bytes])?;
+            file.seek(SeekFrom::Start(place - gap))?;
+            file.write_all(&piece[..bytes])?;
+            place += bytes as u64;
+        }
+        file.set_len(length.saturating_sub(gap))
     }
 
     /// Writes out what is buffered, gives the file its name and tells its size in bytes.
@@ -154,6 +172,12 @@ impl Seek for PartialFile {
 /// Where a file of this name goes: behind a symbolic link, to the file that it leads to, so that the link stays a link.
 /// Renaming would put a file in the place of anything else, and be the end of a pipe or a device.
 fn target_of(path: &Path) -> Result<PathBuf> {
+    if path.is_dir() {
+        return Err(unwritable(path, "cannot be written: it is a folder").with_fix("give a file's name"));
+    }
+    if path.file_name().is_none() {
+        return Err(unwritable(path, "cannot be written: it is not a file's name"));
+    }
     let refused =
         |why: &str| Err(unwritable(path, format!("cannot be written: {why}")).with_fix("give another name"));
     let found = match path.symlink_metadata() {
@@ -176,9 +200,9 @@ fn open_locked(path: &Path) -> io::Result<File> {
     loop {
         let opened = match path.symlink_metadata() {
             // Not truncated before it is ours: it may be another run's.
-            Ok(found) if found.is_file() => OpenOptions::new().write(true).open(path),
+            Ok(found) if found.is_file() => OpenOptions::new().read(true).write(true).open(path),
             Ok(_) => return Err(io::ErrorKind::AlreadyExists.into()),
-            Err(_) => OpenOptions::new().write(true).create_new(true).open(path),
+            Err(_) => OpenOptions::new().read(true).write(true).create_new(true).open(path),
         };
         let file = match opened {
             Ok(file) => file,
@@ -210,6 +234,97 @@ fn open_locked(path: &Path) -> io::Result<File> {
     }
 }
 
+/// Looks whether a file of this name can be begun, as far as that can be told without beginning it.
+///
+/// # Errors
+/// As [`PartialFile::create`].
+pub fn check(path: &Path) -> Result<()> {
+    let target = target_of(path)?;
+    match std::fs::metadata(folder_of(&target)) {
+        Ok(folder) if folder.is_dir() => Ok(()),
+        Ok(_) => Err(write_error(path, &io::ErrorKind::NotADirectory.into())),
+        Err(error) => Err(write_error(path, &error)),
+    }
+}
+
+/// Room that is left on the disk of an output, bytes, where the system tells.
+pub fn room_beside(path: &Path) -> Option<u64> {
+    fs4::available_space(folder_of(path)).ok()
+}
+
+/// A name of the disk that an output lies on, the same for all of one disk.
+pub fn disk_of(path: &Path) -> Option<String> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Some(std::fs::metadata(folder_of(path)).ok()?.dev().to_string())
+    }
+    #[cfg(not(unix))]
+    {
+        let folder = folder_of(path).canonicalize().ok()?;
+        Some(folder.components().next()?.as_os_str().to_string_lossy().into_owned())
+    }
+}
+
+/// A folder for files of ours, made if it was not there. When it is dropped, one that was made and is still empty is removed.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    is_new: bool,
+}
+
+impl Folder {
+    /// Makes sure that there is the folder `path`.
+    ///
+    /// # Errors
+    /// [`Code::Unwritable`], naming it.
+    pub fn make(path: &Path) -> Result<Self> {
+        match std::fs::create_dir(path) {
+            Ok(()) => Ok(Self { path: path.to_owned(), is_new: true }),
+            Err(_) if path.is_dir() => Ok(Self { path: path.to_owned(), is_new: false }),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                let sentence = "is to be a folder for the frames, and there is something else of this name";
+                Err(unwritable(path, sentence).with_fix("give the output another name"))
+            }
+            Err(error) => Err(write_error(path, &error)),
+        }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if self.is_new {
+            // Fails if there is anything in it, and so it should.
+            let _ = std::fs::remove_dir(&self.path);
+        }
+    }
+}
+
+/// Removes the regular files in the folder of `path` whose names `is_meant` says `Some(true)` to.
+///
+/// # Errors
+/// If the folder cannot be read, or such a file cannot be removed.
+pub fn remove_beside(path: &Path, is_meant: impl Fn(&str) -> Option<bool>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder_of(path))? {
+        let entry = entry?;
+        let is_named_so = entry.file_name().to_str().and_then(&is_meant) == Some(true);
+        if is_named_so && entry.file_type()?.is_file() {
+            std::fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// The folder that a file of this name lies in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// A temporary file without a name, in the folder of `path`: on the disk that has room for the output. It is gone when
 /// it is dropped, and when the run is killed.
 ///
@@ -218,8 +333,7 @@ fn open_locked(path: &Path) -> io::Result<File> {
 pub fn spool_beside(path: &Path) -> Result<File> {
     // Where the output is a link, its disk is that of the file it leads to.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    tempfile::tempfile_in(folder).map_err(|error| write_error(path, &error))
+    tempfile::tempfile_in(folder_of(&target)).map_err(|error| write_error(path, &error))
 }
 
 /// A temporary file without a name, in the system's folder for such: for what waits before anybody has said where it is

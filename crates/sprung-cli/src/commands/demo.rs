@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::run::run as record;
-use crate::args::{RunArgs, SceneArgs};
+use crate::args::{GeometryArgs, RunArgs, SceneArgs};
 use crate::console::say;
 
 /// Ten simulated seconds at real-time speed, of the jelly unless another scene was asked for.
@@ -18,6 +18,9 @@ pub fn run(scene: Option<&SceneArgs>) -> sprung::Result<()> {
         seconds: Some(10.0),
         fps: Some(25.0),
         settle: false,
+        from: None,
+        geometry: GeometryArgs::default(),
+        dry_run: false,
         plot: None,
         at: None,
         size: None,

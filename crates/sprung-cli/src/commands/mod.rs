@@ -3,6 +3,7 @@
 mod bench;
 mod demo;
 mod new;
+mod outputs;
 mod record;
 mod run;
 mod scenes;

@@ -29,8 +29,19 @@ pub struct Recorder {
     title: String,
     samples: Vec<(f64, Energy)>,
     held: Vec<Held>,
-    /// Whole frames recorded so far.
+    /// The first frame that is written.
+    from: u64,
+    /// Whole frames written so far.
     frames: u64,
+}
+
+/// Refuses a name that is given twice.
+pub fn check_names(outputs: &[PathBuf], plot: Option<&PathBuf>) -> Result<()> {
+    let mut names: Vec<&PathBuf> = outputs.iter().chain(plot).collect();
+    names.sort();
+    let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) else { return Ok(()) };
+    let error = Error::new(Code::Duplicate, "is given twice as an output");
+    Err(error.in_file(twice[0].display().to_string()).with_fix("give each output a name of its own"))
 }
 
 impl Recorder {
@@ -40,22 +51,16 @@ impl Recorder {
         plot: Option<&PathBuf>,
         info: &RunInfo,
         options: &Options,
+        from: u64,
     ) -> Result<Self> {
-        let mut names: Vec<&PathBuf> = outputs.iter().chain(plot).collect();
-        names.sort();
-        if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            let error = Error::new(Code::Duplicate, "is given twice as an output");
-            return Err(error
-                .in_file(twice[0].display().to_string())
-                .with_fix("give each output a name of its own"));
-        }
+        check_names(outputs, plot)?;
         let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
         let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
         let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;
         // After the exports: an output that is asked for twice is refused, whatever it would hold.
         let plot = plot.map(|path| EnergyPlot::begin(path)).transpose()?;
         let title = format!("Energy: {}", info.title);
-        Ok(Self { exports, plot, title, samples: Vec::new(), held: Vec::new(), frames: 0 })
+        Ok(Self { exports, plot, title, samples: Vec::new(), held: Vec::new(), from, frames: 0 })
     }
 
     /// Takes the current state as frame `index`.
@@ -135,11 +140,13 @@ impl Recorder {
     }
 
     fn write(&mut self, frame: &Frame<'_>) -> Result<()> {
-        self.exports.iter_mut().try_for_each(|export| export.frame(frame))?;
+        if frame.index >= self.from {
+            self.exports.iter_mut().try_for_each(|export| export.frame(frame))?;
+        }
         if let Some(energy) = frame.energy {
             self.samples.push((frame.snapshot.time, *energy));
         }
-        self.frames += 1;
+        self.frames += u64::from(frame.index >= self.from);
         Ok(())
     }
 }

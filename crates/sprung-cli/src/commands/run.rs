@@ -8,9 +8,10 @@ use sprung::scene::Scene;
 use sprung::{
     Change, Code, Error, Params, Result, SettleOptions, Simulation, significant as rounded, stability,
 };
-use sprung_io::{Options, RunInfo, Written};
+use sprung_io::{RunInfo, Written, files};
 
-use super::record::Recorder;
+use super::outputs::{self, Outputs};
+use super::record::{Recorder, check_names};
 use super::show::describe;
 use crate::args::RunArgs;
 use crate::console::{bytes, complain, counted, note, progress, say, seconds};
@@ -39,12 +40,18 @@ pub fn run(args: &RunArgs) -> Result<()> {
         simulation.change(Change::Dt(plan.dt))?;
     }
     simulation.keep_ledger(args.plot.is_some());
-    check_picture_options(args, &plan)?;
-    let options = Options { size: args.size, at: args.at, ..Options::default() };
+    let options = outputs::options(args);
     let info = info(&name, &scene, &simulation, &plan);
-    let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options)?;
+    let outputs = Outputs::plan(args, &info, &options)?;
+    check_times(args, &plan)?;
+    outputs.check_room()?;
+    if args.dry_run {
+        return dry_run(args, &plan, &name, &outputs);
+    }
+    let mut recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options, plan.from)?;
     if !args.quiet {
         plan.announce();
+        outputs.announce();
     }
     warn_of_large_dt(&mut simulation);
 
@@ -80,30 +87,39 @@ pub fn run(args: &RunArgs) -> Result<()> {
     Ok(())
 }
 
-/// `--at` needs a picture and a time that the run reaches, `--size` something to draw.
-fn check_picture_options(args: &RunArgs, plan: &Plan) -> Result<()> {
-    let draws = |endings: &[&str]| {
-        let ending = |path: &std::path::PathBuf| {
-            path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
-        };
-        args.output.iter().filter_map(ending).any(|ending| endings.contains(&ending.as_str()))
-    };
-    if args.size.is_some() && !draws(&["png", "gif", "mp4"]) {
-        let error = Error::new(Code::Conflict, "is of no use without a picture").in_file("--size");
-        return Err(error.with_fix("add -o with a .png, .gif or .mp4"));
-    }
+/// `--at` needs a time of which a frame is written.
+fn check_times(args: &RunArgs, plan: &Plan) -> Result<()> {
     let Some(at) = args.at else { return Ok(()) };
-    if !draws(&["png"]) {
-        return Err(Error::new(Code::Conflict, "is of no use without a .png")
-            .in_file("--at")
-            .with_fix("add -o NAME.png"));
-    }
-    let end = plan.dt * (plan.steps_per_frame * plan.frames) as f64;
+    let time = |frame: u64| plan.dt * (plan.steps_per_frame * frame) as f64;
+    let (start, end) = (time(plan.from), time(plan.frames));
+    let refused = |sentence: String| Error::new(Code::OutOfRange, sentence).in_file("--at");
     if at > end + 1e-9 {
         let sentence = format!("is {} s, and the run ends at {} s", rounded(at), rounded(end));
-        return Err(Error::new(Code::OutOfRange, sentence)
-            .in_file("--at")
-            .with_fix("make it longer with --seconds"));
+        return Err(refused(sentence).with_fix("make it longer with --seconds"));
+    }
+    if at < start - 1e-9 {
+        let sentence = format!("is {} s, and the first frame is at {} s", rounded(at), rounded(start));
+        return Err(refused(sentence).with_fix("choose a later time, or an earlier --from"));
+    }
+    Ok(())
+}
+
+/// Says what would be done. Of the places to write it looks whether they can be written, and leaves them as they are.
+fn dry_run(args: &RunArgs, plan: &Plan, name: &str, outputs: &Outputs<'_>) -> Result<()> {
+    check_names(&args.output, args.plot.as_ref())?;
+    args.output.iter().chain(&args.plot).try_for_each(|path| files::check(path))?;
+    plan.announce();
+    let steps = plan.steps_per_frame * plan.frames;
+    say(format_args!(
+        "{name}: {}, {} of {} s, {} s simulated",
+        counted(plan.frames + 1, "frame"),
+        counted(steps, "step"),
+        rounded(plan.dt),
+        rounded(plan.dt * steps as f64)
+    ));
+    outputs.tell(plan.frames - plan.from + 1);
+    if let Some(path) = &args.plot {
+        say(format_args!("{}: the energy plot", path.display()));
     }
     Ok(())
 }
@@ -112,7 +128,9 @@ fn check_picture_options(args: &RunArgs, plan: &Plan) -> Result<()> {
 struct Plan {
     dt: f64,
     steps_per_frame: u64,
+    /// Number of the last frame, and of the first that is written.
     frames: u64,
+    from: u64,
     /// The frame rate that dt was fitted to, and dt as it was.
     fitted: Option<(f64, f64)>,
     /// A film of these frames will jump.
@@ -139,7 +157,13 @@ impl Plan {
         let fitted = args.fps.filter(|_| dt != params.dt).map(|fps| (fps, params.dt));
         let film = args.output.iter().any(|path| path.extension().is_some_and(|e| e == "gif" || e == "mp4"));
         let jumps = film && args.fps.is_none() && frame_time > SMOOTH;
-        Ok(Self { dt, steps_per_frame, frames: args.frames.unwrap_or(frames as u64), fitted, jumps })
+        let frames = args.frames.unwrap_or(frames as u64);
+        let from = args.from.unwrap_or(0);
+        if from > frames {
+            let sentence = format!("is frame {from}, and the last one is {frames}");
+            return Err(Error::new(Code::OutOfRange, sentence).in_file("--from"));
+        }
+        Ok(Self { dt, steps_per_frame, frames, from, fitted, jumps })
     }
 
     fn announce(&self) {
@@ -167,7 +191,7 @@ fn info(name: &str, scene: &Scene, simulation: &Simulation, plan: &Plan) -> RunI
         model: simulation.model().clone(),
         params: simulation.params().clone(),
         frame_time: plan.dt * plan.steps_per_frame as f64,
-        frames: plan.frames + 1,
+        frames: plan.frames - plan.from + 1,
     }
 }
 

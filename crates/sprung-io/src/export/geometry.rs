@@ -154,6 +154,11 @@ impl Geometry {
         self.parts.iter().map(|part| part.triangles.len()).sum()
     }
 
+    /// The points of the model that the vertices of the bodies are, in order.
+    pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
+        self.sources.iter().flat_map(Range::clone)
+    }
+
     /// All triangles, their corners as indices into [`positions`](Self::positions).
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.parts.iter().flat_map(|part| {
@@ -280,7 +285,7 @@ fn chosen(model: &Model, names: Option<&[String]>) -> Result<Vec<usize>> {
             called(name).ok_or_else(|| {
                 let there: Vec<&str> = model.bodies().iter().map(|body| body.name.as_str()).collect();
                 let sentence = format!("there is no body \"{name}\"; there are {}", there.join(", "));
-                Error::new(Code::NotFound, sentence).in_file("--bodies")
+                Error::new(Code::NotFound, sentence).in_file("--body")
             })
         })
         .collect::<Result<Vec<usize>>>()?;

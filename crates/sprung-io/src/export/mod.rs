@@ -4,10 +4,18 @@ mod colour;
 mod csv;
 pub mod geometry;
 mod gltf;
+mod mdd;
 mod npz;
+mod numbers;
+mod obj;
+mod pc2;
+mod ply;
+mod sequence;
 mod spool;
 mod stored_zip;
 mod usd;
+mod vtk;
+mod vtp;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -19,8 +27,13 @@ use sprung::{Model, Params, Result, Snapshot};
 pub use csv::CSV;
 pub use geometry::Geometry;
 pub use gltf::GLB;
+pub use mdd::MDD;
 pub use npz::NPZ;
+pub use obj::OBJ;
+pub use pc2::PC2;
+pub use ply::PLY;
 pub use usd::{USDA, USDC, USDZ};
+pub use vtk::VTK;
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use sprung::Code;
-use sprung_io::export::{CSV, NPZ};
+use sprung_io::export::{CSV, MDD, NPZ, OBJ, PC2, PLY, VTK};
 
 use crate::common::{begin, give, names_in, run_of, snapshot, to_the_end};
-use crate::npz;
+use crate::sequences::{Obj, Ply, Vtp};
+use crate::{caches, npz};
 
 const POINTS: usize = 1000;
 
@@ -102,6 +103,63 @@ fn child_on_a_small_disk() {
         assert_eq!(read.f32s()[start..], expected);
     }
     assert_eq!(names_in(&folder()), ["a.npz"]);
+    std::fs::remove_file(path).expect("removed");
+
+    let full = "cannot be written: the disk is full";
+    for exporter in [PC2, MDD] {
+        let path = folder().join("a").with_extension(exporter.ending);
+        let frames = fill(exporter, &path, full);
+        check_cache(&path, frames);
+        std::fs::remove_file(path).expect("removed");
+    }
+    for exporter in [OBJ, PLY, VTK] {
+        let path = folder().join("a").with_extension(exporter.ending);
+        let frames = fill(exporter, &path, full);
+        check_sequence(&path, frames);
+        for name in names_in(&folder()) {
+            let path = folder().join(name);
+            let removed =
+                if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+            removed.expect("removed");
+        }
+    }
+}
+
+/// A point cache of whole frames.
+fn check_cache(path: &Path, frames: u64) {
+    let cache = caches::read(path);
+    assert_eq!(cache.frames.len() as u64, frames);
+    for (frame, read) in cache.frames.iter().enumerate() {
+        assert!(*read == snapshot(POINTS, frame as u64).positions, "frame {frame} of {}", path.display());
+    }
+}
+
+/// A sequence of whole frames, and nothing else.
+fn check_sequence(path: &Path, frames: u64) {
+    let ending = path.extension().expect("it has one").to_string_lossy().into_owned();
+    let numbered = |frame: u64, ending: &str| format!(".{frame:04}.{ending}");
+    let names = names_in(&folder());
+    if ending == "pvd" {
+        assert_eq!(names, ["a", "a.pvd"]);
+        let collection = std::fs::read_to_string(path).expect("text");
+        assert_eq!(collection.matches("<DataSet ").count() as u64, frames);
+        assert!(collection.ends_with("</Collection>\n</VTKFile>\n"));
+        let files: Vec<String> =
+            (0..frames).map(|frame| "points".to_owned() + &numbered(frame, "vtp")).collect();
+        assert_eq!(names_in(&folder().join("a")), files);
+    } else {
+        let files: Vec<String> =
+            (0..frames).map(|frame| "a".to_owned() + &numbered(frame, &ending)).collect();
+        assert_eq!(names, files);
+    }
+    for frame in 0..frames {
+        let read = match ending.as_str() {
+            "obj" => Obj::read(&folder().join(format!("a.{frame:04}.obj"))).vertices,
+            "ply" => Ply::read(&folder().join(format!("a.{frame:04}.ply"))).vectors(["x", "y", "z"]),
+            _ => Vtp::read(&folder().join(format!("a/points.{frame:04}.vtp"))).vectors("Points"),
+        };
+        assert!(read == snapshot(POINTS, frame).positions, "frame {frame} of {}", path.display());
+    }
 }
 
 /// What stops the file here is a limit of 2 MB on its size, with the signal that goes with it ignored.
@@ -117,6 +175,13 @@ fn child_under_a_size_limit() {
     let path = folder().join("a.csv");
     let frames = fill(CSV, &path, sentence);
     check_csv(&path, frames);
+
+    for exporter in [PC2, MDD] {
+        let path = folder().join("a").with_extension(exporter.ending);
+        let frames = fill(exporter, &path, sentence);
+        check_cache(&path, frames);
+        std::fs::remove_file(path).expect("removed");
+    }
 
     // An archive needs its arrays in one file, so here nothing can be kept, and nothing is left.
     let run = run_of(POINTS);

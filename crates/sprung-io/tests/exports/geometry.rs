@@ -68,7 +68,7 @@ fn chosen_bodies_keep_the_models_order_and_the_springs_among_them() {
     let unknown = Options { bodies: Some(vec!["middle".to_owned()]), ..Options::default() };
     let error = Geometry::new(&run, &unknown, Springs::None).expect_err("there is none");
     assert_eq!(error.code(), Code::NotFound);
-    assert_eq!(error.to_string(), "--bodies: there is no body \"middle\"; there are left, stone, right");
+    assert_eq!(error.to_string(), "--body: there is no body \"middle\"; there are left, stone, right");
 }
 
 #[test]

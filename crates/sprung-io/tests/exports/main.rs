@@ -1,5 +1,6 @@
 //! Exports read back, and what is left behind when they end early.
 
+mod caches;
 mod common;
 #[cfg(target_os = "linux")]
 mod full_disk;
@@ -7,4 +8,5 @@ mod geometry;
 mod npz;
 #[cfg(unix)]
 mod places;
+mod sequences;
 mod tables;

@@ -5,13 +5,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use sprung::{Code, Vec3};
-use sprung_io::export::{CSV, NPZ};
+use sprung_io::export::{CSV, MDD, NPZ, PC2};
 use sprung_io::{Exporter, Options, PartialFile};
 
 use crate::common::{begin, names_in, run_of, snapshot, to_the_end};
 use crate::npz;
 
-const TABLES: [Exporter; 2] = [CSV, NPZ];
+const TABLES: [Exporter; 4] = [CSV, NPZ, PC2, MDD];
 
 fn bits(vectors: &[Vec3]) -> Vec<u32> {
     vectors.iter().flat_map(|vector| vector.to_array().map(f32::to_bits)).collect()
@@ -157,7 +157,7 @@ fn what_a_killed_run_left_behind_does_not_block_the_next() {
             begin(exporter, &path, &run_of(3), 2).expect("written").finish(&mut to_the_end).expect("written");
         assert!(written.bytes < 10_000, "nothing of the killed run is in {} bytes", written.bytes);
     }
-    assert_eq!(names_in(folder.path()), ["a.csv", "a.npz"]);
+    assert_eq!(names_in(folder.path()), ["a.csv", "a.mdd", "a.npz", "a.pc2"]);
 }
 
 /// Many threads begin, write and finish the same name as fast as they can: whoever succeeds wrote a whole file.

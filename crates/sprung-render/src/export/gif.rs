@@ -34,7 +34,7 @@ const FEWEST: usize = 12;
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
     let pictures = (run.frames as f64).min(100.0 / SHORTEST as f64 * run.frame_time * run.frames as f64);
-    Ok(about(options, DEFAULT_SIZE, 0.05 * pictures))
+    Ok(about(options, DEFAULT_SIZE, 0.2 * pictures))
 }
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {

@@ -27,7 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
-    Ok(about(options, DEFAULT_SIZE, 0.02 * run.frames as f64))
+    Ok(about(options, DEFAULT_SIZE, 0.04 * run.frames as f64))
 }
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {

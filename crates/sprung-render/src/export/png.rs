@@ -25,7 +25,7 @@ pub const PNG: Exporter = Exporter {
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 
 fn estimate(_: &RunInfo, options: &Options) -> Result<Estimate> {
-    Ok(about(options, DEFAULT_SIZE, 0.15))
+    Ok(about(options, DEFAULT_SIZE, 0.4))
 }
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {

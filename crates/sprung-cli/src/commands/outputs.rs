@@ -1,0 +1,164 @@
+//! What a run will write: the options that its outputs heed, how large they will be, and whether there is room.
+
+use std::path::{Path, PathBuf};
+
+use sprung::{Code, Error, Result};
+use sprung_io::{Estimate, Exporter, Heeds, Options, RunInfo, Springs, Up, files};
+use sprung_render::export::{EXPORTERS, exporter_for};
+
+use crate::args::{Axis, RunArgs, SpringStyle};
+use crate::console::{bytes, counted, note, say};
+
+/// Runs that write less than this do not say so beforehand, bytes.
+const WORTH_TELLING: u64 = 100_000_000;
+
+/// The outputs of a run, in the order in which they were given.
+pub struct Outputs<'a> {
+    planned: Vec<(&'a Path, Estimate)>,
+}
+
+impl<'a> Outputs<'a> {
+    /// Plans them.
+    ///
+    /// # Errors
+    /// Those of an ending that nobody writes, of options that are of no use for these outputs, and of whatever the formats
+    /// refuse of run and options.
+    pub fn plan(args: &'a RunArgs, info: &RunInfo, options: &Options) -> Result<Self> {
+        let exporters = args.output.iter().map(|path| exporter_for(path)).collect::<Result<Vec<_>>>()?;
+        check_heeded(args, &exporters)?;
+        let estimate = |(path, exporter): (&'a PathBuf, &&Exporter)| {
+            let named = |error: Error| error.in_file(path.display().to_string());
+            Ok((path.as_path(), (exporter.estimate)(info, options).map_err(named)?))
+        };
+        Ok(Self { planned: args.output.iter().zip(&exporters).map(estimate).collect::<Result<_>>()? })
+    }
+
+    /// Whether there is room for all of them. What is known to the byte and does not fit is refused; of what is not, it
+    /// warns.
+    ///
+    /// # Errors
+    /// [`Code::TooLarge`].
+    pub fn check_room(&self) -> Result<()> {
+        let mut disks: Vec<(String, &Path)> =
+            self.planned.iter().filter_map(|&(path, _)| Some((files::disk_of(path)?, path))).collect();
+        disks.sort();
+        disks.dedup_by(|a, b| a.0 == b.0);
+        for (disk, path) in disks {
+            let Some(room) = files::room_beside(path) else { continue };
+            let here =
+                || self.planned.iter().filter(|(path, _)| files::disk_of(path).as_ref() == Some(&disk));
+            let sum = |estimates: &mut dyn Iterator<Item = Estimate>| {
+                estimates.fold(0u64, |sum, estimate| sum.saturating_add(estimate.bytes()))
+            };
+            let exact = sum(&mut here().map(|planned| planned.1).filter(|e| matches!(e, Estimate::Exact(_))));
+            let all = sum(&mut here().map(|planned| planned.1));
+            let place = |need: u64| {
+                let what = if here().count() == 1 { "it needs" } else { "the outputs there need" };
+                format!("{what} {}, and the disk has {} left", bytes(need), bytes(room))
+            };
+            if exact > room {
+                let error = Error::new(Code::TooLarge, format!("will not fit: {}", place(exact)));
+                let error = error.in_file(path.display().to_string());
+                return Err(error.with_fix("write fewer frames, or to another disk"));
+            }
+            if all > room {
+                note(format_args!("Warning: {} may not fit: {}.", path.display(), place(all)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Says how much will be written, if it is much.
+    pub fn announce(&self) {
+        let total = self.planned.iter().fold(0u64, |sum, (_, estimate)| sum.saturating_add(estimate.bytes()));
+        if total >= WORTH_TELLING {
+            let each: Vec<String> = self
+                .planned
+                .iter()
+                .map(|(path, estimate)| format!("{} {}", size(*estimate), path.display()))
+                .collect();
+            note(format_args!("Will write {}.", each.join(", ")));
+        }
+    }
+
+    /// Says what would be written, a line for each output.
+    pub fn tell(&self, frames: u64) {
+        for (path, estimate) in &self.planned {
+            say(format_args!("{}: {}, {}", path.display(), counted(frames, "frame"), size(*estimate)));
+        }
+    }
+}
+
+fn size(estimate: Estimate) -> String {
+    match estimate {
+        Estimate::Exact(count) => bytes(count),
+        Estimate::About(count) => format!("about {}", bytes(count)),
+    }
+}
+
+/// What was said about outputs.
+pub fn options(args: &RunArgs) -> Options {
+    let defaults = Options::default();
+    Options {
+        size: args.size,
+        at: args.at,
+        up: args.geometry.up.map_or(defaults.up, |up| match up {
+            Axis::Y => Up::Y,
+            Axis::Z => Up::Z,
+        }),
+        scale: args.geometry.scale.unwrap_or(defaults.scale),
+        springs: args.geometry.springs.map(|style| match style {
+            SpringStyle::None => Springs::None,
+            SpringStyle::Lines => Springs::Lines,
+            SpringStyle::Tubes => Springs::Tubes,
+        }),
+        bodies: (!args.geometry.body.is_empty()).then(|| args.geometry.body.clone()),
+        points: args.geometry.points,
+    }
+}
+
+/// An option that none of the outputs heeds is refused: it was meant for something.
+fn check_heeded(args: &RunArgs, exporters: &[&Exporter]) -> Result<()> {
+    let given = [
+        ("--size", Heeds::Size, args.size.is_some()),
+        ("--at", Heeds::At, args.at.is_some()),
+        ("--up", Heeds::Geometry, args.geometry.up.is_some()),
+        ("--scale", Heeds::Geometry, args.geometry.scale.is_some()),
+        ("--body", Heeds::Geometry, !args.geometry.body.is_empty()),
+        ("--points", Heeds::Geometry, args.geometry.points),
+        ("--springs", Heeds::Springs, args.geometry.springs.is_some()),
+    ];
+    for (name, heeds, _) in given.into_iter().filter(|&(.., is_given)| is_given) {
+        if exporters.iter().any(|exporter| exporter.heeds.contains(&heeds)) {
+            continue;
+        }
+        let endings: Vec<String> = EXPORTERS
+            .iter()
+            .filter(|exporter| exporter.heeds.contains(&heeds))
+            .map(|exporter| format!(".{}", exporter.ending))
+            .collect();
+        let without = match (heeds, &endings[..]) {
+            (Heeds::Size, _) => "without a picture".to_owned(),
+            (_, [ending]) => format!("without a {ending}"),
+            _ => "for these outputs".to_owned(),
+        };
+        return Err(of_no_use(name, &without, format!("add -o with a {}", one_of(&endings))));
+    }
+    if args.from.is_some() && args.output.is_empty() {
+        return Err(of_no_use("--from", "without an output", "add -o FILE".into()));
+    }
+    Ok(())
+}
+
+fn of_no_use(option: &str, without: &str, fix: String) -> Error {
+    Error::new(Code::Conflict, format!("is of no use {without}")).in_file(option).with_fix(fix)
+}
+
+/// `.png, .gif or .mp4`.
+fn one_of(endings: &[String]) -> String {
+    match endings {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}

@@ -1,0 +1,144 @@
+//! PLY: a binary file for each frame, with velocities, normals and colours as properties.
+//!
+//! Little-endian. Vertices have `x y z`, `nx ny nz` where there are triangles, `vx vy vz` and `red green blue`; faces are
+//! triangles; springs are edges, with `vertex1` and `vertex2`.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::Path;
+
+use sprung::{Result, Vec3};
+
+use super::numbers::{little, write_all};
+use super::obj::{one_line, unit_and_axes};
+use super::sequence::Sequence;
+use super::{
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Written,
+};
+
+/// `.ply`: a binary mesh file for each frame.
+pub const PLY: Exporter = Exporter {
+    ending: "ply",
+    description: "binary meshes with normals, velocities and colours, one file for each frame",
+    heeds: &[Heeds::Geometry, Heeds::Springs],
+    estimate,
+    open,
+};
+
+struct PlyExport {
+    files: Sequence,
+    geometry: Geometry,
+    normals: Vec<Vec3>,
+    header: String,
+}
+
+fn geometry(run: &RunInfo, options: &Options) -> Result<Geometry> {
+    Geometry::new(run, options, options.springs.unwrap_or(Springs::None))
+}
+
+fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
+    let geometry = geometry(run, options)?;
+    let header = header(run, options, &geometry);
+    Ok(Box::new(PlyExport { files: Sequence::begin(path)?, geometry, normals: Vec::new(), header }))
+}
+
+fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
+    let geometry = geometry(run, options)?;
+    let vertex = 12 + if has_normals(&geometry) { 12 } else { 0 } + 12 + 3;
+    let bytes = header(run, options, &geometry).len()
+        + geometry.vertex_count() * vertex
+        + geometry.triangle_count() * 13
+        + geometry.lines().len() * 8;
+    Ok(Estimate::Exact(run.frames * bytes as u64))
+}
+
+fn has_normals(geometry: &Geometry) -> bool {
+    geometry.triangle_count() > 0
+}
+
+/// The same for every frame.
+fn header(run: &RunInfo, options: &Options, geometry: &Geometry) -> String {
+    let mut header = "ply\nformat binary_little_endian 1.0\n".to_owned();
+    let mut line = |text: std::fmt::Arguments<'_>| {
+        let _ = writeln!(header, "{text}");
+    };
+    line(format_args!("comment {}", one_line(&run.title)));
+    line(format_args!("comment {}; velocities per second", unit_and_axes(options)));
+    line(format_args!("comment {} s from one frame to the next", run.frame_time));
+    line(format_args!("element vertex {}", geometry.vertex_count()));
+    let normals: &[&str] = if has_normals(geometry) { &["nx", "ny", "nz"] } else { &[] };
+    for name in ["x", "y", "z"].iter().chain(normals).chain(&["vx", "vy", "vz"]) {
+        line(format_args!("property float {name}"));
+    }
+    for name in ["red", "green", "blue"] {
+        line(format_args!("property uchar {name}"));
+    }
+    line(format_args!("element face {}", geometry.triangle_count()));
+    line(format_args!("property list uchar int vertex_indices"));
+    if !geometry.lines().is_empty() {
+        line(format_args!("element edge {}", geometry.lines().len()));
+        line(format_args!("property int vertex1\nproperty int vertex2"));
+    }
+    header + "end_header\n"
+}
+
+impl Export for PlyExport {
+    fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
+        let Self { files, geometry, normals, header } = self;
+        geometry.take(frame);
+        if has_normals(geometry) {
+            geometry.normals(normals);
+        }
+        files.write(frame.index, |out| {
+            out.write_all(header.as_bytes())?;
+            write_geometry(out, geometry, normals)
+        })?;
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>, _: &mut Progress<'_>) -> Result<Written> {
+        self.files.finish()
+    }
+}
+
+fn write_geometry(out: &mut impl Write, geometry: &Geometry, normals: &[Vec3]) -> io::Result<()> {
+    for part in geometry.parts() {
+        let vectors =
+            |vertex: usize| [little(geometry.positions()[vertex]), little(geometry.velocities()[vertex])];
+        if has_normals(geometry) {
+            write_all(
+                out,
+                part.vertices.clone().map(|vertex| {
+                    let [position, velocity] = vectors(vertex);
+                    let mut record = [0; 39];
+                    record[..12].copy_from_slice(&position);
+                    record[12..24].copy_from_slice(&little(normals[vertex]));
+                    record[24..36].copy_from_slice(&velocity);
+                    record[36..].copy_from_slice(&part.colour);
+                    record
+                }),
+            )?;
+        } else {
+            write_all(
+                out,
+                part.vertices.clone().map(|vertex| {
+                    let [position, velocity] = vectors(vertex);
+                    let mut record = [0; 27];
+                    record[..12].copy_from_slice(&position);
+                    record[12..24].copy_from_slice(&velocity);
+                    record[24..].copy_from_slice(&part.colour);
+                    record
+                }),
+            )?;
+        }
+    }
+    let face = |triangle: [u32; 3]| {
+        let mut record = [3; 13];
+        for (corner, place) in triangle.iter().zip(record[1..].chunks_exact_mut(4)) {
+            place.copy_from_slice(&corner.to_le_bytes());
+        }
+        record
+    };
+    write_all(out, geometry.triangles().map(face))?;
+    write_all(out, geometry.lines().iter().flat_map(|line| line.ends).map(u32::to_le_bytes))
+}

@@ -1,0 +1,123 @@
+//! A sequence of files, one for each frame: `-o cloth.obj` writes `cloth.0000.obj`, `cloth.0001.obj` and so on.
+//!
+//! The number is the frame's, with four digits or more, as sequences are named everywhere. Each file appears whole. The
+//! name that was asked for stays free, but while the sequence grows `cloth.obj.partial` is locked: two runs do not mix
+//! their frames. A finished sequence ends with its last frame: those behind it, which an earlier and longer run left, are
+//! removed.
+
+use std::ffi::OsStr;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use sprung::Result;
+
+use super::Written;
+use crate::files::{PartialFile, remove_beside, write_error};
+
+/// A sequence being written. Dropped unfinished, the files that it wrote are removed.
+#[derive(Debug)]
+pub struct Sequence {
+    /// Holds the name; never becomes a file.
+    lock: PartialFile,
+    /// First and last frame that were written.
+    range: Option<(u64, u64)>,
+    frames: u64,
+    bytes: u64,
+    is_finished: bool,
+}
+
+impl Sequence {
+    /// Begins the sequence that is called `path`.
+    ///
+    /// # Errors
+    /// As [`PartialFile::create`].
+    pub fn begin(path: &Path) -> Result<Self> {
+        let lock = PartialFile::create(path)?;
+        Ok(Self { lock, range: None, frames: 0, bytes: 0, is_finished: false })
+    }
+
+    /// The name that was asked for.
+    pub fn path(&self) -> &Path {
+        self.lock.path()
+    }
+
+    /// Writes the file of a frame. One that does not fit leaves nothing behind.
+    ///
+    /// # Errors
+    /// [`sprung::Code::Unwritable`], naming the file.
+    pub fn write(
+        &mut self,
+        frame: u64,
+        content: impl FnOnce(&mut PartialFile) -> io::Result<()>,
+    ) -> Result<u64> {
+        let path = numbered(self.path(), &format!("{frame:04}"));
+        let mut file = PartialFile::create(&path)?;
+        content(&mut file).map_err(|error| write_error(&path, &error))?;
+        let bytes = file.finish()?;
+        self.range = Some((self.range.map_or(frame, |(first, _)| first), frame));
+        self.frames += 1;
+        self.bytes += bytes;
+        Ok(bytes)
+    }
+
+    /// Removes the file of the frame that was written last, of `bytes`: it turned out not to be whole.
+    pub fn take_back(&mut self, bytes: u64) {
+        let Some((first, last)) = self.range else { return };
+        let _ = std::fs::remove_file(numbered(self.path(), &format!("{last:04}")));
+        self.range = (last > first).then(|| (first, last - 1));
+        self.frames -= 1;
+        self.bytes -= bytes;
+    }
+
+    /// Ends the sequence with its last frame.
+    ///
+    /// # Errors
+    /// [`sprung::Code::Unwritable`] if what an earlier run left behind it cannot be removed.
+    pub fn finish(mut self) -> Result<Written> {
+        self.is_finished = true;
+        if let Some((_, last)) = self.range {
+            self.remove(|number| number > last).map_err(|error| write_error(self.path(), &error))?;
+        }
+        let path = match self.range {
+            Some((first, last)) if first == last => numbered(self.path(), &format!("{first:04}")),
+            _ => numbered(self.path(), "####"),
+        };
+        Ok(Written { path, bytes: self.bytes, frames: self.frames })
+    }
+
+    /// Removes the files of the sequence whose numbers are such.
+    fn remove(&self, which: impl Fn(u64) -> bool) -> io::Result<()> {
+        let [before, after] = around(self.path());
+        remove_beside(self.path(), |name| {
+            let digits = name.strip_prefix(&*before)?.strip_suffix(&*after)?;
+            let number: u64 = digits.parse().ok()?;
+            Some(format!("{number:04}") == digits && which(number))
+        })
+    }
+}
+
+impl Drop for Sequence {
+    fn drop(&mut self) {
+        if let Some((first, last)) = self.range.filter(|_| !self.is_finished) {
+            let _ = self.remove(|number| (first..=last).contains(&number));
+        }
+    }
+}
+
+/// The name of one file: `cloth.0012.obj` for `cloth.obj` and `0012`.
+fn numbered(path: &Path, number: &str) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(".");
+    name.push(number);
+    if let Some(ending) = path.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    path.with_file_name(name)
+}
+
+/// What is before and after the number in the names of a sequence's files.
+fn around(path: &Path) -> [String; 2] {
+    let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    [text(path.file_stem()) + ".", format!(".{}", text(path.extension()))]
+}
