@@ -207,7 +207,9 @@ impl Geometry {
             let normal = (b - a).cross(c - a);
             triangle.iter().for_each(|&corner| normals[corner as usize] += normal);
         }
-        normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+        // Through the largest component: the square of a small number may have few digits or none.
+        let unit = |normal: Vec3| (normal / normal.abs().max_element()).normalize_or_zero();
+        normals.iter_mut().for_each(|normal| *normal = unit(*normal));
     }
 
     /// A vector without a length in space, such as a force, in the file's axes.

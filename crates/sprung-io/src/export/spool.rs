@@ -35,12 +35,21 @@ impl Spool {
         Ok(())
     }
 
-    /// Puts its whole frames at the end of `out`, last piece first, and shortens the temporary file as it goes: it takes no
-    /// more room on the disk than it frees.
-    pub fn move_to(&mut self, out: &mut (impl Write + Seek), moved: &mut dyn FnMut(u64)) -> io::Result<()> {
+    /// Forgets what does not belong to a whole frame.
+    pub fn roll_back(&mut self) -> io::Result<()> {
         // A second handle, not a flush: after a failed write the buffer still holds what did not fit.
         let mut file = self.file.get_ref().try_clone()?;
         file.set_len(self.whole)?;
+        file.seek(SeekFrom::Start(self.whole))?;
+        let (_, _) = std::mem::replace(&mut self.file, BufWriter::new(file)).into_parts();
+        Ok(())
+    }
+
+    /// Puts its whole frames at the end of `out`, last piece first, and shortens the temporary file as it goes: it takes no
+    /// more room on the disk than it frees.
+    pub fn move_to(&mut self, out: &mut (impl Write + Seek), moved: &mut dyn FnMut(u64)) -> io::Result<()> {
+        self.roll_back()?;
+        let file = self.file.get_mut();
         let start = out.seek(SeekFrom::End(0))?;
         let mut piece = vec![0; PIECE_BYTES];
         let mut left = self.whole;

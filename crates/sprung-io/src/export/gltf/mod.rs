@@ -173,7 +173,11 @@ impl Export for Clip {
             let sentence = format!("is full after {MOST_FRAMES} frames, the most that a .glb holds");
             return Err(Error::new(Code::TooLarge, sentence).in_file(self.file.path().display().to_string()));
         }
-        self.take(frame).map_err(|error| write_error(self.file.path(), &error))
+        self.take(frame).map_err(|error| {
+            // What has come of it goes, so that another may be tried. If that fails, so will the end.
+            let _ = self.data.roll_back();
+            write_error(self.file.path(), &error)
+        })
     }
 
     fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {

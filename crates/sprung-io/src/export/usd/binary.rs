@@ -73,7 +73,11 @@ impl Binary {
         if self.package.is_some() && self.bytes_with(self.whole.count + 1) > package::MOST_CONTENT_BYTES {
             return Err(self.archive_is_full());
         }
-        self.take(index, columns).map_err(|error| write_error(self.file.path(), &error))
+        self.take(index, columns).map_err(|error| {
+            // What has come of it goes, so that another may be tried. If that fails, so will the end.
+            let _ = self.file.roll_back();
+            write_error(self.file.path(), &error)
+        })
     }
 
     fn take(&mut self, index: u64, columns: &[Vec<[f32; 3]>]) -> io::Result<()> {

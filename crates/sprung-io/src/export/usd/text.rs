@@ -56,7 +56,11 @@ impl Text {
 
     /// Takes the columns of one more frame.
     pub fn frame(&mut self, index: u64, columns: &[Vec<[f32; 3]>]) -> Result<()> {
-        self.take(index, columns).map_err(|error| write_error(self.file.path(), &error))
+        self.take(index, columns).map_err(|error| {
+            // What has come of it goes, so that another may be tried. If that fails, so will the end.
+            let _ = self.columns.iter_mut().try_for_each(Spool::roll_back);
+            write_error(self.file.path(), &error)
+        })
     }
 
     fn take(&mut self, index: u64, columns: &[Vec<[f32; 3]>]) -> io::Result<()> {
