@@ -1,147 +1,62 @@
-"""Imports files into Blender, steps to every frame, and holds each vertex against the NumPy archive of the same run.
+"""Opens what one run wrote in Blender, steps through it, and compares every vertex with the run's NumPy archive.
 
-    python check_blender.py RUN.npz FRAME_TIME PICTURE.png FILE...
-
-Python must have Blender as a module: `pip install bpy`. PICTURE shows the last frame of the first file, drawn by Cycles; with
-`-` none is drawn. A USD file comes before the glTF files. Z is up in Blender, and its importers say so by turning the object (USD) or the vertices (glTF).
+Run by `cargo xtask blender` as: check_blender.py FOLDER, where FOLDER holds run.npz, run.pc2, run.mdd and the sequences
+run.NNNN.obj and run.NNNN.ply of the same run, written with `--up z`. It does what docs/export.md says to click.
 """
 
 import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
 
 
-def load(path, frame_time):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
-    if path.endswith(".glb"):
-        bpy.ops.import_scene.gltf(filepath=path)
-    else:
-        bpy.ops.wm.usd_import(filepath=path)
-        assert scene.frame_start == 0
-    return [o for o in scene.objects if o.type in ("MESH", "POINTCLOUD", "CURVES")]
-
-
-def vertices(thing, graph):
-    """Of a thing as it is at the current frame, in its own axes."""
-    data = thing.evaluated_get(graph).data
-    positions = data.attributes["position"].data
-    found = np.empty(3 * len(positions), np.float32)
-    positions.foreach_get("vector", found)
+def vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    found = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", found)
     return found.reshape(-1, 3)
 
 
-def corners(thing):
-    """The vertices of a mesh that are corners of its faces, or all, in ascending order."""
-    data = thing.data
-    if thing.type != "MESH" or not data.polygons:
-        return None
-    found = np.empty(len(data.loops), np.int32)
-    data.loops.foreach_get("vertex_index", found)
-    return np.unique(found)
+def same(found: np.ndarray, expected: np.ndarray, what: str) -> None:
+    assert found.shape == expected.shape, f"{what}: {found.shape}, and not {expected.shape}"
+    assert (found == expected).all(), f"{what}: differs by up to {np.abs(found - expected).max()}"
 
 
-def check(path, archive, frame_time, used):
-    things = load(path, frame_time)
-    positions, springs = archive["positions"], archive["springs"]
-    frames, points, _ = positions.shape
-    is_gltf = path.endswith(".glb")
-    # A sample of USD is a frame of Blender's, whatever the rates; a key of glTF lies where its time is.
-    frames_apart = frame_time * bpy.context.scene.render.fps if is_gltf else 1.0
-    if is_gltf and frames > 1:
-        (action,) = bpy.data.actions
-        assert abs(action.frame_range[1] - (frames - 1) * frames_apart) < 1e-3, action.frame_range
-    count = worst = 0.0
-    for frame in range(frames):
-        whole, part = divmod(frame * frames_apart, 1)
-        bpy.context.scene.frame_set(int(whole), subframe=part)
-        graph = bpy.context.evaluated_depsgraph_get()
-        next_point = 0
-        for thing in things:
-            found = vertices(thing, graph)
-            turned = np.array(thing.matrix_world.to_3x3())
-            # Blender leaves out the vertices of a glTF mesh that are no corner of a face, such as those inside a jelly.
-            kept = used.get(thing.name) if is_gltf else None
-            here = slice(next_point, next_point + len(found)) if kept is None else kept[0]
-            chosen = positions[frame, here]
-            if thing.name.startswith("springs"):
-                chosen = positions[frame] if is_gltf else positions[frame, springs.reshape(-1)]
-            else:
-                if not is_gltf:
-                    faces = corners(thing)
-                    used[thing.name] = None if faces is None else (next_point + faces, len(found))
-                next_point += len(found) if kept is None else kept[1]
-            if is_gltf:
-                # Vertices are turned, and are sums of two float32, rounded twice, here of all weights and their shapes.
-                assert (turned == np.eye(3)).all()
-                expected = np.stack([chosen[:, 0], -chosen[:, 2], chosen[:, 1]], axis=1)
-                motion = np.abs(positions - positions[0]).max()
-                # The weights of a frame are found by its time, to a few units in the last place of that.
-                allowed = 2.0**-24 * (np.abs(expected) + motion) + 4 * frames * 2.0**-24 * motion
-            else:
-                assert np.abs(turned - [[1, 0, 0], [0, 0, -1], [0, 1, 0]]).max() < 1e-6, turned
-                expected, allowed = chosen, np.zeros_like(chosen)
-            off = np.abs(found - expected)
-            assert off.shape == allowed.shape, f"{path}: {len(found)} vertices"
-            assert (off <= allowed).all(), f"{path}: {thing.name} at {frame} is off by {off.max()}"
-            worst = max(worst, off.max())
-            count += len(found)
-        assert next_point == points, f"{path}: {next_point} of {points} points"
-    print(f"{path}: {int(count)} vertices in {frames} frames, the worst off by {worst:.1e}")
+def opened(path: Path) -> bpy.types.Object:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    read = bpy.ops.wm.obj_import if path.suffix == ".obj" else bpy.ops.wm.ply_import
+    read(filepath=str(path), forward_axis="Y", up_axis="Z")
+    return bpy.context.selected_objects[0]
 
 
-def draw(path, frame_time, picture):
-    """The last frame of a file, from in front and above."""
-    things = load(path, frame_time)
-    scene = bpy.context.scene
-    scene.frame_set(scene.frame_end)
-    graph = bpy.context.evaluated_depsgraph_get()
-    in_space = [
-        vertices(t, graph) @ np.array(t.matrix_world.to_3x3()).T for t in things
-    ]
-    low, high = np.concatenate(in_space).min(axis=0), np.concatenate(in_space).max(axis=0)
-    middle, size = (low + high) / 2, np.linalg.norm(high - low)
+def main(folder: Path) -> None:
+    archive = np.load(folder / "run.npz")
+    x, y, z = np.moveaxis(archive["positions"], -1, 0)
+    positions = np.stack([x, -z, y], axis=-1)
+    frames = len(positions)
 
-    material = bpy.data.materials.new("displayColor")
-    material.use_nodes = True
-    shader = material.node_tree.nodes["Principled BSDF"]
-    colour = material.node_tree.nodes.new("ShaderNodeAttribute")
-    colour.attribute_name = "displayColor"
-    material.node_tree.links.new(colour.outputs["Color"], shader.inputs["Base Color"])
-    for thing in things:
-        thing.data.materials.clear()
-        thing.data.materials.append(material)
+    for ending in (".obj", ".ply"):
+        for frame in range(frames):
+            thing = opened(folder / f"run.{frame:04}{ending}")
+            same(vertices(thing.data), positions[frame], f"frame {frame} of {ending}")
+            # The importer's turn is a matrix of the object: this one is none.
+            assert np.allclose(thing.matrix_world, np.eye(4), atol=1e-6), thing.matrix_world
 
-    eye = middle + size * np.array([0.8, -1.6, 0.6])
-    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    target = bpy.data.objects.new("target", None)
-    camera.location, target.location = eye, middle
-    track = camera.constraints.new("TRACK_TO")
-    track.target = target
-    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy, sun.rotation_euler = 3.0, (0.7, 0.2, 0.3)
-    for thing in (camera, target, sun):
-        scene.collection.objects.link(thing)
-    scene.camera = camera
-    scene.world = bpy.data.worlds.new("world")
-    scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.8, 0.85, 0.9, 1)
-    scene.render.engine = "CYCLES"
-    scene.cycles.device, scene.cycles.samples = "CPU", 16
-    scene.render.resolution_x, scene.render.resolution_y = 640, 400
-    scene.render.filepath = picture
-    bpy.ops.render.render(write_still=True)
+    for ending in (".pc2", ".mdd"):
+        thing = opened(folder / "run.0000.obj")
+        cache = thing.modifiers.new("motion", "MESH_CACHE")
+        cache.cache_format = ending[1:].upper()
+        cache.filepath = str(folder / f"run{ending}")
+        cache.frame_start = 0
+        for frame in range(frames):
+            bpy.context.scene.frame_set(frame)
+            evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+            same(vertices(evaluated.data), positions[frame], f"frame {frame} of {ending}")
+
+    count = positions.shape[0] * positions.shape[1]
+    version = bpy.app.version_string
+    print(f"{frames} frames, {count} vertices: Blender {version} shows .obj, .ply, .pc2 and .mdd where the archive has them")
 
 
-def main():
-    archive, frame_time, picture, *paths = sys.argv[1:]
-    archive = np.load(archive)
-    used = {}
-    for path in paths:
-        check(path, archive, float(frame_time), used)
-    if picture != "-":
-        draw(paths[0], float(frame_time), picture)
-
-
-main()
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

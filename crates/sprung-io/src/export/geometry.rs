@@ -10,6 +10,9 @@
 //!
 //! All vertices lie in one list, part after part. The order is the bodies', and within a body its points', and it never
 //! changes: vertex 7 of one frame, format or version is vertex 7 of every other that was written with the same options.
+//!
+//! Of a body that is shown by its surface, only the points of the surface leave: a reader of meshes may drop vertices that
+//! nothing uses, and then a point cache fits the mesh no more. With springs as lines all of them are used.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -66,13 +69,24 @@ pub struct Line {
 pub struct Geometry {
     parts: Vec<Part>,
     lines: Vec<Line>,
-    /// Where the vertices come from, in order.
-    sources: Vec<Range<usize>>,
+    /// The points of the chosen bodies, in ascending order.
+    bodies: Vec<Range<usize>>,
+    /// Where the vertices come from, in order; one for each of those bodies.
+    sources: Vec<Source>,
     /// Springs drawn as tubes: their ends as points of the model, and the radius, m.
     tubes: Option<(Vec<[u32; 2]>, f32)>,
     place: Placement,
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
+}
+
+/// Where a body's vertices come from.
+#[derive(Clone, Debug)]
+enum Source {
+    /// They are all its points.
+    All(Range<usize>),
+    /// They are these points, in ascending order.
+    Some(Vec<u32>),
 }
 
 /// Axes and unit of the file.
@@ -107,6 +121,7 @@ impl Geometry {
         let mut geometry = Self {
             parts: Vec::new(),
             lines: Vec::new(),
+            bodies: Vec::new(),
             sources: Vec::new(),
             tubes: None,
             place: Placement { up: options.up, scale: options.scale as f32 },
@@ -114,7 +129,7 @@ impl Geometry {
             velocities: Vec::new(),
         };
         for index in chosen(model, options.bodies.as_deref())? {
-            geometry.add_body(model, index, options.points);
+            geometry.add_body(model, index, options.points, springs == Springs::Lines);
         }
         match springs {
             Springs::None => {}
@@ -154,9 +169,10 @@ impl Geometry {
         self.parts.iter().map(|part| part.triangles.len()).sum()
     }
 
-    /// The points of the model that the vertices of the bodies are, in order.
-    pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
-        self.sources.iter().flat_map(Range::clone)
+    /// For each vertex, the point of the model that it is; none for a corner of a tube.
+    pub fn points(&self) -> impl Iterator<Item = Option<usize>> + '_ {
+        let of_bodies = self.sources.iter().flat_map(Source::points).map(Some);
+        of_bodies.chain(std::iter::repeat(None)).take(self.vertex_count())
     }
 
     /// All triangles, their corners as indices into [`positions`](Self::positions).
@@ -174,7 +190,14 @@ impl Geometry {
         for (from, to) in [(points, &mut self.positions), (speeds, &mut self.velocities)] {
             to.clear();
             for source in &self.sources {
-                to.extend(from[source.clone()].iter().map(|&v| self.place.turn(v) * scale));
+                match source {
+                    Source::All(points) => {
+                        to.extend(from[points.clone()].iter().map(|&v| self.place.turn(v) * scale));
+                    }
+                    Source::Some(points) => {
+                        to.extend(points.iter().map(|&p| self.place.turn(from[p as usize]) * scale));
+                    }
+                }
             }
         }
         if let Some((tubes, radius)) = &self.tubes {
@@ -217,19 +240,35 @@ impl Geometry {
         self.place.turn(vector)
     }
 
-    fn add_body(&mut self, model: &Model, index: usize, as_points: bool) {
+    fn add_body(&mut self, model: &Model, index: usize, as_points: bool, whole: bool) {
         let body = &model.bodies()[index];
-        let vertices = self.extend(body.points.len());
-        self.sources.push(body.points.clone());
         let surfaces = || model.surfaces().iter().filter(|surface| surface.body == index && !as_points);
+        let corners = || surfaces().flat_map(|surface| &surface.triangles);
         let first = body.points.start as u32;
+
+        // The surface's points in ascending order, and where in that list each of the body's is.
+        let mut place_of: Vec<u32> = (0..body.points.len() as u32).collect();
+        let source = if whole || corners().next().is_none() {
+            Source::All(body.points.clone())
+        } else {
+            let mut is_used = vec![false; body.points.len()];
+            corners().flatten().for_each(|&corner| is_used[(corner - first) as usize] = true);
+            let mut used = Vec::new();
+            for point in (0..body.points.len()).filter(|&point| is_used[point]) {
+                place_of[point] = used.len() as u32;
+                used.push(first + point as u32);
+            }
+            Source::Some(used)
+        };
+        let vertices = self.extend(source.points().count());
+        self.bodies.push(body.points.clone());
+        self.sources.push(source);
         self.parts.push(Part {
             name: body.name.clone(),
             body: Some(index),
             vertices,
-            triangles: surfaces()
-                .flat_map(|surface| &surface.triangles)
-                .map(|triangle| triangle.map(|corner| corner - first))
+            triangles: corners()
+                .map(|triangle| triangle.map(|corner| place_of[(corner - first) as usize]))
                 .collect(),
             is_closed: surfaces().count() > 0 && surfaces().all(|surface| surface.kind == SurfaceKind::Skin),
             colour: rgb(BODY_COLOURS[index % BODY_COLOURS.len()]),
@@ -242,27 +281,31 @@ impl Geometry {
         start..start + count
     }
 
+    /// The chosen body that a point belongs to, as an index into those.
+    fn body_of(&self, point: usize) -> Option<usize> {
+        let body = self.bodies.partition_point(|points| points.end <= point);
+        self.bodies.get(body).filter(|points| points.contains(&point)).map(|_| body)
+    }
+
+    /// The springs between chosen bodies that are not cut when the run begins.
+    fn springs<'a>(&'a self, run: &'a RunInfo) -> impl Iterator<Item = (usize, [u32; 2])> + 'a {
+        let is_chosen = |ends: &[u32; 2]| ends.iter().all(|&end| self.body_of(end as usize).is_some());
+        let springs = run.model.springs().iter().copied().enumerate();
+        springs.filter(move |(spring, ends)| !run.params.spring_cut[*spring] && is_chosen(ends))
+    }
+
     fn add_lines(&mut self, run: &RunInfo) {
+        // Each body's vertices are all its points then.
         let vertex_of = |point: u32| {
-            // Bodies, and so the sources, are in ascending order.
-            let point = point as usize;
-            let part = self.sources.partition_point(|source| source.end <= point);
-            let source = self.sources.get(part).filter(|source| source.contains(&point))?;
-            Some((point - source.start + self.parts[part].vertices.start) as u32)
+            let body = self.body_of(point as usize).unwrap_or(0);
+            (point as usize - self.bodies[body].start + self.parts[body].vertices.start) as u32
         };
-        let mut lines = Vec::new();
-        for spring in whole_springs(run) {
-            let [i, j] = run.model.springs()[spring];
-            if let (Some(i), Some(j)) = (vertex_of(i), vertex_of(j)) {
-                lines.push(Line { spring, ends: [i, j] });
-            }
-        }
-        self.lines = lines;
+        self.lines =
+            self.springs(run).map(|(spring, ends)| Line { spring, ends: ends.map(vertex_of) }).collect();
     }
 
     fn add_tubes(&mut self, run: &RunInfo) {
-        self.add_lines(run);
-        let ends: Vec<[u32; 2]> = self.lines.drain(..).map(|line| run.model.springs()[line.spring]).collect();
+        let ends: Vec<[u32; 2]> = self.springs(run).map(|(_, ends)| ends).collect();
         let vertices = self.extend(2 * TUBE_SIDES * ends.len());
         let triangles = (0..ends.len()).flat_map(|tube| tube_triangles((2 * TUBE_SIDES * tube) as u32));
         self.parts.push(Part {
@@ -274,6 +317,15 @@ impl Geometry {
             colour: rgb(SPRING_COLOUR),
         });
         self.tubes = Some((ends, tube_radius(&run.model)));
+    }
+}
+
+impl Source {
+    fn points(&self) -> Box<dyn Iterator<Item = usize> + '_> {
+        match self {
+            Self::All(points) => Box::new(points.clone()),
+            Self::Some(points) => Box::new(points.iter().map(|&point| point as usize)),
+        }
     }
 }
 
@@ -294,11 +346,6 @@ fn chosen(model: &Model, names: Option<&[String]>) -> Result<Vec<usize>> {
     bodies.sort_unstable();
     bodies.dedup();
     Ok(bodies)
-}
-
-/// The springs that are not cut when the run begins.
-fn whole_springs(run: &RunInfo) -> impl Iterator<Item = usize> + '_ {
-    (0..run.model.spring_count()).filter(|&spring| !run.params.spring_cut[spring])
 }
 
 /// The radius of springs that are exported as tubes, m.

@@ -1,7 +1,7 @@
 //! PLY: a binary file for each frame, with velocities, normals and colours as properties.
 //!
-//! Little-endian. Vertices have `x y z`, `nx ny nz` where there are triangles, `vx vy vz` and `red green blue`; faces are
-//! triangles; springs are edges, with `vertex1` and `vertex2`.
+//! Little-endian. Vertices have `x y z`, `nx ny nz` where there are triangles, `vx vy vz`, `red green blue` and `point`, the
+//! number of the point that they are, or −1; faces are triangles; springs are edges, with `vertex1` and `vertex2`.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -12,6 +12,7 @@ use sprung::{Result, Vec3};
 use super::numbers::{little, write_all};
 use super::obj::{one_line, unit_and_axes};
 use super::sequence::Sequence;
+use super::vtp::number;
 use super::{
     Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Springs, Written,
 };
@@ -44,7 +45,7 @@ fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
     let geometry = geometry(run, options)?;
-    let vertex = 12 + if has_normals(&geometry) { 12 } else { 0 } + 12 + 3;
+    let vertex = 12 + if has_normals(&geometry) { 12 } else { 0 } + 12 + 3 + 4;
     let bytes = header(run, options, &geometry).len()
         + geometry.vertex_count() * vertex
         + geometry.triangle_count() * 13
@@ -73,6 +74,7 @@ fn header(run: &RunInfo, options: &Options, geometry: &Geometry) -> String {
     for name in ["red", "green", "blue"] {
         line(format_args!("property uchar {name}"));
     }
+    line(format_args!("property int point"));
     line(format_args!("element face {}", geometry.triangle_count()));
     line(format_args!("property list uchar int vertex_indices"));
     if !geometry.lines().is_empty() {
@@ -102,35 +104,30 @@ impl Export for PlyExport {
 }
 
 fn write_geometry(out: &mut impl Write, geometry: &Geometry, normals: &[Vec3]) -> io::Result<()> {
-    for part in geometry.parts() {
-        let vectors =
-            |vertex: usize| [little(geometry.positions()[vertex]), little(geometry.velocities()[vertex])];
-        if has_normals(geometry) {
-            write_all(
-                out,
-                part.vertices.clone().map(|vertex| {
-                    let [position, velocity] = vectors(vertex);
-                    let mut record = [0; 39];
-                    record[..12].copy_from_slice(&position);
-                    record[12..24].copy_from_slice(&little(normals[vertex]));
-                    record[24..36].copy_from_slice(&velocity);
-                    record[36..].copy_from_slice(&part.colour);
-                    record
-                }),
-            )?;
-        } else {
-            write_all(
-                out,
-                part.vertices.clone().map(|vertex| {
-                    let [position, velocity] = vectors(vertex);
-                    let mut record = [0; 27];
-                    record[..12].copy_from_slice(&position);
-                    record[12..24].copy_from_slice(&velocity);
-                    record[24..].copy_from_slice(&part.colour);
-                    record
-                }),
-            )?;
-        }
+    let (positions, velocities) = (geometry.positions(), geometry.velocities());
+    let colours = geometry.parts().iter().flat_map(|part| part.vertices.clone().map(|_| part.colour));
+    let vertices = colours.zip(geometry.points().map(number)).enumerate();
+    if has_normals(geometry) {
+        let record = |(vertex, (colour, point)): (usize, ([u8; 3], [u8; 4]))| {
+            let mut record = [0; 43];
+            record[..12].copy_from_slice(&little(positions[vertex]));
+            record[12..24].copy_from_slice(&little(normals[vertex]));
+            record[24..36].copy_from_slice(&little(velocities[vertex]));
+            record[36..39].copy_from_slice(&colour);
+            record[39..].copy_from_slice(&point);
+            record
+        };
+        write_all(out, vertices.map(record))?;
+    } else {
+        let record = |(vertex, (colour, point)): (usize, ([u8; 3], [u8; 4]))| {
+            let mut record = [0; 31];
+            record[..12].copy_from_slice(&little(positions[vertex]));
+            record[12..24].copy_from_slice(&little(velocities[vertex]));
+            record[24..27].copy_from_slice(&colour);
+            record[27..].copy_from_slice(&point);
+            record
+        };
+        write_all(out, vertices.map(record))?;
     }
     let face = |triangle: [u32; 3]| {
         let mut record = [3; 13];

@@ -40,6 +40,7 @@ enum Content {
     Masses,
     Fixed,
     Bodies,
+    Points,
     Strains,
     Tensions,
     /// Corners of cells of one kind, and where each cell's end.
@@ -87,6 +88,7 @@ impl Content {
             Self::Masses => ("mass", "Float32", 1, 4),
             Self::Fixed => ("fixed", "UInt8", 1, 1),
             Self::Bodies => ("body", "Int32", 1, 4),
+            Self::Points => ("point", "Int32", 1, 4),
             Self::Strains => ("strain", "Float32", 1, 4),
             Self::Tensions => ("tension", "Float32", 1, 4),
             Self::Corners(_) => ("connectivity", "Int32", 1, 4),
@@ -113,13 +115,14 @@ impl Content {
 /// The elements of a piece, each with its arrays: those of a surface or of points, in the order of the file.
 fn elements(geometry: &Geometry) -> Vec<(&'static str, Vec<Content>)> {
     use Content::{
-        Bodies, Corners, Ends, Fixed, Forces, Masses, Normals, Positions, Strains, Tensions, Velocities,
+        Bodies, Corners, Ends, Fixed, Forces, Masses, Normals, Points, Positions, Strains, Tensions,
+        Velocities,
     };
     let is_surface = geometry.triangle_count() > 0;
     let of_points = if is_surface {
-        vec![Velocities, Normals, Bodies]
+        vec![Velocities, Normals, Bodies, Points]
     } else {
-        vec![Velocities, Forces, Masses, Fixed, Bodies]
+        vec![Velocities, Forces, Masses, Fixed, Bodies, Points]
     };
     let of_cells = if geometry.lines().is_empty() { vec![] } else { vec![Strains, Tensions] };
     let cells = |cells| vec![Corners(cells), Ends(cells)];
@@ -179,7 +182,7 @@ impl Layer {
             .iter()
             .flat_map(|part| part.vertices.clone().map(|_| part.body.map_or(-1, |body| body as i32)))
             .collect();
-        let mass = geometry.points().map(|point| run.params.point_mass[point]).collect();
+        let mass = geometry.points().flatten().map(|point| run.params.point_mass[point]).collect();
         let header = header(&geometry);
         let model = run.model.clone();
         Ok(Self { files: Sequence::begin(path)?, model, geometry, header, normals: Vec::new(), body, mass })
@@ -257,12 +260,16 @@ impl Moment<'_> {
             Content::Positions => vectors(out, geometry.positions()),
             Content::Velocities => vectors(out, geometry.velocities()),
             Content::Normals => vectors(out, self.normals),
-            Content::Forces => write_all(out, geometry.points().map(|point| little(self.force(point)))),
+            Content::Forces => {
+                write_all(out, geometry.points().flatten().map(|point| little(self.force(point))))
+            }
             Content::Masses => write_all(out, self.mass.iter().map(|mass| mass.to_le_bytes())),
             Content::Fixed => {
-                write_all(out, geometry.points().map(|point| [u8::from(frame.params.is_fixed(point))]))
+                let points = geometry.points().flatten();
+                write_all(out, points.map(|point| [u8::from(frame.params.is_fixed(point))]))
             }
             Content::Bodies => write_all(out, self.body.iter().map(|body| body.to_le_bytes())),
+            Content::Points => write_all(out, geometry.points().map(number)),
             Content::Strains => self.of_springs(out, |spring| spring.strain.unwrap_or(f64::NAN)),
             Content::Tensions => self.of_springs(out, |spring| spring.tension),
             Content::Corners(Cells::Verts) => {
@@ -293,6 +300,11 @@ impl Moment<'_> {
         let read = |spring| SpringReading::of(self.model, params, snapshot, spring).map_or(f64::NAN, &value);
         write_all(out, self.geometry.lines().iter().map(|line| (read(line.spring) as f32).to_le_bytes()))
     }
+}
+
+/// The number of a vertex's point; −1 for none.
+pub(super) fn number(point: Option<usize>) -> [u8; 4] {
+    point.map_or(-1, |point| point as i32).to_le_bytes()
 }
 
 fn vectors(out: &mut impl Write, vectors: &[Vec3]) -> io::Result<()> {

@@ -93,6 +93,7 @@ fn tubes_are_closed_and_turned_outwards() {
     let positions: Vec<Vec3> = (0..9).map(|i| Vec3::new(0.3 * i as f32, (i % 4) as f32, 1.0)).collect();
     let snapshot = Snapshot { step: 0, time: 0.0, velocities: positions.clone(), positions };
     let geometry = taken(&run, &Options::default(), Springs::Tubes, &snapshot);
+    assert_eq!(geometry.points().filter(Option::is_none).count(), 4 * 12);
     let tubes = geometry.parts().last().expect("the springs are the last part");
     assert_eq!((tubes.name.as_str(), tubes.body), ("springs", None));
     assert_eq!(geometry.positions()[..9], snapshot.positions, "they come after the bodies");
@@ -122,6 +123,32 @@ fn tubes_are_closed_and_turned_outwards() {
         .sum();
     let expected = 1.5 * 3f64.sqrt() * radius * radius * length;
     assert!((volume - expected).abs() < 1e-5 * radius * 4.0, "{volume} m³, and not {expected}");
+}
+
+#[test]
+fn of_a_skin_only_its_own_points_leave() {
+    let simulation =
+        sprung::scene::Scene::builtin("jelly").and_then(|scene| scene.simulation()).expect("built in");
+    let (model, params) = (Arc::clone(simulation.model()), simulation.params().clone());
+    let run =
+        RunInfo { scene: "jelly".into(), title: "Jelly".into(), model, params, frame_time: 0.1, frames: 1 };
+    let snapshot = snapshot(1000, 0);
+    let geometry = taken(&run, &Options::default(), Springs::None, &snapshot);
+    // Of 10³ points the 8³ inside are left out, and the others keep their order.
+    let points: Vec<usize> = geometry.points().flatten().collect();
+    assert_eq!((points.len(), geometry.vertex_count()), (1000 - 512, 488));
+    assert!(points.is_sorted() && geometry.parts()[0].is_closed);
+    assert!(geometry.positions().iter().eq(points.iter().map(|&point| &snapshot.positions[point])));
+    let triangles = &run.model.surfaces()[0].triangles;
+    for (found, triangle) in geometry.triangles().zip(triangles) {
+        assert_eq!(found.map(|corner| points[corner as usize] as u32), *triangle);
+    }
+    for (options, springs) in [
+        (Options { points: true, ..Options::default() }, Springs::None),
+        (Options::default(), Springs::Lines),
+    ] {
+        assert_eq!(taken(&run, &options, springs, &snapshot).positions(), snapshot.positions);
+    }
 }
 
 #[test]

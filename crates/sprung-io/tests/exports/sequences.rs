@@ -78,6 +78,7 @@ impl Ply {
                             let value = match kind {
                                 "float" => f32::from_bits(word(take(4))),
                                 "uchar" => f32::from(take(1)[0]),
+                                "int" => word(take(4)) as i32 as f32,
                                 other => panic!("{other}"),
                             };
                             ply.columns.entry(name.to_owned()).or_default().push(value);
