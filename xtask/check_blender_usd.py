@@ -1,9 +1,9 @@
 """Imports files into Blender, steps to every frame, and holds each vertex against the NumPy archive of the same run.
 
-    python check_blender.py RUN.npz FRAME_TIME PICTURE.png FILE...
+    python check_blender_usd.py RUN.npz FRAME_TIME PICTURE.png FILE...
 
 Python must have Blender as a module: `pip install bpy`. PICTURE shows the last frame of the first file, drawn by Cycles; with
-`-` none is drawn. A USD file comes before the glTF files. Z is up in Blender, and its importers say so by turning the object (USD) or the vertices (glTF).
+`-` none is drawn. Z is up in Blender, and its importers say so by turning the object (USD) or the vertices (glTF).
 """
 
 import sys
@@ -32,20 +32,23 @@ def vertices(thing, graph):
     return found.reshape(-1, 3)
 
 
-def corners(thing):
-    """The vertices of a mesh that are corners of its faces, or all, in ascending order."""
-    data = thing.data
-    if thing.type != "MESH" or not data.polygons:
-        return None
-    found = np.empty(len(data.loops), np.int32)
-    data.loops.foreach_get("vertex_index", found)
-    return np.unique(found)
+def points_of(thing, found, first):
+    """Which point each vertex is: said by the file, or else found out by where it is in the first frame."""
+    if "point" in thing.data.attributes:
+        numbers = thing.data.attributes["point"].data
+        points = np.empty(len(numbers), np.int32)
+        numbers.foreach_get("value", points)
+        return points
+    # Plus zero, as a turned zero may have another sign. No two points are in one place then.
+    point_at = {tuple(position + 0.0): point for point, position in enumerate(first)}
+    upright = np.stack([found[:, 0], found[:, 2], -found[:, 1]], axis=1)
+    return np.array([point_at[tuple(position + 0.0)] for position in upright])
 
 
-def check(path, archive, frame_time, used):
+def check(path, archive, frame_time):
     things = load(path, frame_time)
     positions, springs = archive["positions"], archive["springs"]
-    frames, points, _ = positions.shape
+    frames = len(positions)
     is_gltf = path.endswith(".glb")
     # A sample of USD is a frame of Blender's, whatever the rates; a key of glTF lies where its time is.
     frames_apart = frame_time * bpy.context.scene.render.fps if is_gltf else 1.0
@@ -53,25 +56,18 @@ def check(path, archive, frame_time, used):
         (action,) = bpy.data.actions
         assert abs(action.frame_range[1] - (frames - 1) * frames_apart) < 1e-3, action.frame_range
     count = worst = 0.0
+    points = {}
     for frame in range(frames):
         whole, part = divmod(frame * frames_apart, 1)
         bpy.context.scene.frame_set(int(whole), subframe=part)
         graph = bpy.context.evaluated_depsgraph_get()
-        next_point = 0
         for thing in things:
             found = vertices(thing, graph)
             turned = np.array(thing.matrix_world.to_3x3())
-            # Blender leaves out the vertices of a glTF mesh that are no corner of a face, such as those inside a jelly.
-            kept = used.get(thing.name) if is_gltf else None
-            here = slice(next_point, next_point + len(found)) if kept is None else kept[0]
-            chosen = positions[frame, here]
-            if thing.name.startswith("springs"):
-                chosen = positions[frame] if is_gltf else positions[frame, springs.reshape(-1)]
-            else:
-                if not is_gltf:
-                    faces = corners(thing)
-                    used[thing.name] = None if faces is None else (next_point + faces, len(found))
-                next_point += len(found) if kept is None else kept[1]
+            if frame == 0:
+                is_curves = thing.type == "CURVES"
+                points[thing] = springs.reshape(-1) if is_curves else points_of(thing, found, positions[0])
+            chosen = positions[frame, points[thing]]
             if is_gltf:
                 # Vertices are turned, and are sums of two float32, rounded twice, here of all weights and their shapes.
                 assert (turned == np.eye(3)).all()
@@ -87,7 +83,6 @@ def check(path, archive, frame_time, used):
             assert (off <= allowed).all(), f"{path}: {thing.name} at {frame} is off by {off.max()}"
             worst = max(worst, off.max())
             count += len(found)
-        assert next_point == points, f"{path}: {next_point} of {points} points"
     print(f"{path}: {int(count)} vertices in {frames} frames, the worst off by {worst:.1e}")
 
 
@@ -137,9 +132,8 @@ def draw(path, frame_time, picture):
 def main():
     archive, frame_time, picture, *paths = sys.argv[1:]
     archive = np.load(archive)
-    used = {}
     for path in paths:
-        check(path, archive, float(frame_time), used)
+        check(path, archive, float(frame_time))
     if picture != "-":
         draw(paths[0], float(frame_time), picture)
 

@@ -55,6 +55,13 @@ pub struct Part {
     pub colour: [u8; 3],
 }
 
+impl Part {
+    /// What it is called where it has to be called something.
+    pub fn label(&self) -> &str {
+        if self.name.is_empty() { "points" } else { &self.name }
+    }
+}
+
 /// A spring as a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {

@@ -155,7 +155,7 @@ impl Document {
 
     /// How long [`text`](Self::text) is at most, with what stands around it.
     pub fn text_bytes(&self, frames: u64) -> u64 {
-        let names: usize = drawn_parts(&self.geometry).map(|part| part.name.len()).sum();
+        let names: usize = drawn_parts(&self.geometry).map(|part| part.label().len()).sum();
         // A name may stand in four places, and a byte of it may take six.
         let names = 24 * (names + self.scene.len()) as u64;
         let meshes = 1 + self.layout.drawn.len() as u64;
@@ -192,9 +192,9 @@ impl Document {
         for (number, drawn) in self.layout.drawn.iter().enumerate() {
             let part = drawn_parts(&self.geometry).nth(number);
             let (name, colour, mode, indices, is_closed) = match part {
-                Some(Part { name, colour, triangles, is_closed, .. }) => {
-                    let mode = if triangles.is_empty() { POINTS } else { TRIANGLES };
-                    (name.as_str(), *colour, mode, 3 * triangles.len(), *is_closed)
+                Some(part) => {
+                    let mode = if part.triangles.is_empty() { POINTS } else { TRIANGLES };
+                    (part.label(), part.colour, mode, 3 * part.triangles.len(), part.is_closed)
                 }
                 None => {
                     let [_, r, g, b] = SPRING_COLOUR.to_be_bytes();

@@ -46,10 +46,12 @@ impl Scene {
         let mut names = Vec::new();
         let mut builder = Builder { sources: Vec::new(), lengths: Vec::new() };
         let mut children = Vec::new();
+        let points: Vec<Option<usize>> = geometry.points().collect();
         for part in geometry.parts().iter().filter(|part| !part.vertices.is_empty()) {
-            let name = identifier(&part.name, &names);
+            let name = identifier(part.label(), &names);
             names.push(name.clone());
-            children.push(builder.part(part, name, POINT_RADIUS * tube));
+            let points = points[part.vertices.clone()].iter().copied().collect::<Option<Vec<_>>>();
+            children.push(builder.part(part, name, points, POINT_RADIUS * tube));
         }
         if !geometry.lines().is_empty() {
             children.push(builder.curves(geometry.lines().len(), identifier("springs", &names), tube));
@@ -125,8 +127,9 @@ impl Builder {
         Value::Samples(self.sources.len() - 1)
     }
 
-    /// A body: a mesh if it has triangles, points otherwise.
-    fn part(&mut self, part: &Part, name: String, radius: f32) -> Prim {
+    /// A body: a mesh if it has triangles, points otherwise. `points` are the numbers of its points in the whole scene, if
+    /// it is not made of tubes.
+    fn part(&mut self, part: &Part, name: String, points: Option<Vec<usize>>, radius: f32) -> Prim {
         let (range, count) = (&part.vertices, part.vertices.len());
         let is_mesh = !part.triangles.is_empty();
         let margin = if is_mesh { 0.0 } else { radius };
@@ -140,6 +143,10 @@ impl Builder {
             ),
             colour(part.colour),
         ];
+        if let Some(points) = points {
+            let numbers = Value::Ints(points.into_iter().map(|point| point as i32).collect());
+            attributes.push(Attribute::varying("primvars:point", "int[]", numbers).interpolated("vertex"));
+        }
         if is_mesh {
             let corners: Vec<i32> = part.triangles.as_flattened().iter().map(|&c| c.cast_signed()).collect();
             let normals = self.column(Source::Normals(range.clone()), count);
@@ -155,7 +162,7 @@ impl Builder {
             attributes.push(widths(2.0 * radius));
         }
         let type_name = if is_mesh { "Mesh" } else { "Points" };
-        Prim { name, type_name, display_name: part.name.clone(), attributes, children: Vec::new() }
+        Prim { name, type_name, display_name: part.label().to_owned(), attributes, children: Vec::new() }
     }
 
     /// All springs: each a straight curve of two points.
