@@ -9,6 +9,7 @@ mod instructions;
 mod levels;
 mod shell;
 mod stages;
+mod usd;
 mod window;
 mod window_story;
 
@@ -52,6 +53,12 @@ const STAGES: &[Stage] = &[
         run: window_story::run_all,
     },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
+    Stage {
+        name: "usd",
+        about: "OpenUSD, the Khronos validator and loaders of glTF find what the archive has",
+        run: usd::usd,
+    },
+    Stage { name: "blender-usd", about: "so does Blender, in USD and glTF", run: usd::blender },
     Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
     Stage {
         name: "licences",

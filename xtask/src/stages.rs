@@ -176,7 +176,7 @@ fn cargo_deny() -> Outcome<PathBuf> {
 }
 
 /// The sprung command, optimised.
-fn sprung(arguments: &[&str]) -> std::process::Command {
+pub fn sprung(arguments: &[&str]) -> std::process::Command {
     let manifest = root().join("Cargo.toml").display().to_string();
     let mut command = cargo(&["run", "--locked", "--release", "--quiet", "--manifest-path", &manifest, "--"]);
     command.args(arguments);

@@ -118,7 +118,7 @@ fn child_on_a_small_disk() {
     for exporter in [USDC, USDA, USDZ] {
         let path = folder().join("a").with_extension(exporter.ending);
         let frames = fill(exporter, &path, full);
-        let samples = usd::samples(&*usd::read(&path), "/row/points.points");
+        let samples = usd::samples(&*usd::read(&path), "/row/body.points");
         assert_eq!(samples.len() as u64, frames);
         for (frame, (time, found)) in samples.iter().enumerate() {
             assert_eq!(*time, frame as f64);

@@ -27,7 +27,8 @@ pub fn read(path: &Path) -> Box<dyn AbstractData> {
 
 fn field(layer: &dyn AbstractData, path: &str, name: &str) -> Value {
     let path = sdf::Path::new(path).expect("a path");
-    layer.get_field(&path, name).unwrap_or_else(|_| panic!("{path} has {name}")).into_owned()
+    let found = layer.get_field(&path, name);
+    found.unwrap_or_else(|_| panic!("no {name} of {path} among {:?}", layer.spec_paths())).into_owned()
 }
 
 fn vectors(value: &Value) -> Vec<[u32; 3]> {
