@@ -22,6 +22,16 @@ def same(found: np.ndarray, expected: np.ndarray, what: str) -> None:
     assert (found == expected).all(), f"{what}: differs by up to {np.abs(found - expected).max()}"
 
 
+def points(path: Path) -> np.ndarray:
+    """Which point of the run each vertex is, from a binary .ply."""
+    head, _, data = path.read_bytes().partition(b"end_header\n")
+    lines = [line.split() for line in head.decode().splitlines()]
+    count = next(int(line[2]) for line in lines if line[:2] == ["element", "vertex"])
+    kinds = {"float": "<f4", "int": "<i4", "uchar": "u1"}
+    record = [(line[2], kinds[line[1]]) for line in lines if line[0] == "property" and line[1] in kinds]
+    return np.frombuffer(data, record, count)["point"]
+
+
 def opened(path: Path) -> bpy.types.Object:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     read = bpy.ops.wm.obj_import if path.suffix == ".obj" else bpy.ops.wm.ply_import
@@ -33,6 +43,7 @@ def main(folder: Path) -> None:
     archive = np.load(folder / "run.npz")
     x, y, z = np.moveaxis(archive["positions"], -1, 0)
     positions = np.stack([x, -z, y], axis=-1)
+    positions = positions[:, points(folder / "run.0000.ply")]
     frames = len(positions)
 
     for ending in (".obj", ".ply"):

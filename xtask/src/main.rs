@@ -54,11 +54,17 @@ const STAGES: &[Stage] = &[
     },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
     Stage {
+        name: "exports",
+        about: "meshio, trimesh and VTK find every vertex where the command says it is",
+        run: stages::exports,
+    },
+    Stage {
         name: "usd",
         about: "OpenUSD, the Khronos validator and loaders of glTF find what the archive has",
         run: usd::usd,
     },
-    Stage { name: "blender-usd", about: "so does Blender, in USD and glTF", run: usd::blender },
+    Stage { name: "blender", about: "so does Blender, which plays the caches", run: stages::blender },
+    Stage { name: "blender-usd", about: "and plays USD and glTF", run: usd::blender },
     Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
     Stage {
         name: "licences",

@@ -72,8 +72,13 @@ pub fn demo() -> Outcome {
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET"))?;
     for scene in ["spring", "chain", "jelly", "cloth"] {
-        let names: Vec<String> =
-            ["csv", "npz", "png", "gif", "mp4"].iter().map(|ending| format!("{scene}.{ending}")).collect();
+        let names: Vec<String> = [
+            "csv", "npz", "usdc", "usda", "usdz", "glb", "pc2", "mdd", "obj", "ply", "pvd", "png", "gif",
+            "mp4",
+        ]
+        .iter()
+        .map(|ending| format!("{scene}.{ending}"))
+        .collect();
         let outputs = names.iter().flat_map(|name| ["-o", name]);
         let plot = format!("{scene}.svg");
         run(sprung(&["run", scene, "--frames", "20", "--quiet", "--plot", &plot])
@@ -107,17 +112,67 @@ pub fn python() -> Outcome {
     run(program(python, &["xtask/check_outputs.py", &table, &archive]).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
+/// Two scenes to every format of geometry, in both axes and with and without springs: other people's readers must find each
+/// vertex where the archive of the same run has it.
+pub fn exports() -> Outcome {
+    let python = python_with("venv-exports", "python3", &["numpy", "scipy", "meshio", "trimesh", "vtk"])?;
+    let formats = ["npz", "pc2", "mdd", "obj", "ply", "pvd"];
+    for (scene, up, scale, springs) in
+        [("jelly", "y", "1", "lines"), ("cloth", "z", "100", "lines"), ("jelly", "z", "0.01", "none")]
+    {
+        let folder = fresh_folder("exports-check")?;
+        let mut command = sprung(&["run", scene, "--frames", "12", "--quiet", "--up", up, "--scale", scale]);
+        run(command.args(["--springs", springs]).args(outputs_in(&folder, &formats)))?;
+        let folder = folder.display().to_string();
+        let check = ["xtask/check_exports.py", &folder, up, scale];
+        run(program(&python, &check).env("PYTHONDONTWRITEBYTECODE", "1"))?;
+    }
+    Ok(())
+}
+
+/// Two scenes into Blender itself: as meshes, and as caches that move a mesh. It is a Python module for one version of
+/// Python alone; where that is not installed, this says so.
+pub fn blender() -> Outcome {
+    if !succeeds(&mut program("python3.11", &["--version"])) {
+        return Err("Blender's Python module needs Python 3.11, and there is no python3.11".to_owned());
+    }
+    let python = python_with("venv-blender", "python3.11", &["bpy==4.5.*"])?;
+    for scene in ["jelly", "cloth"] {
+        let folder = fresh_folder("blender-check")?;
+        let mut command = sprung(&["run", scene, "--fps", "24", "--frames", "24", "--quiet", "--up", "z"]);
+        run(command.args(outputs_in(&folder, &["npz", "pc2", "mdd", "obj", "ply"])))?;
+        let check = ["xtask/check_blender.py", &folder.display().to_string()];
+        run(program(&python, &check).env("PYTHONDONTWRITEBYTECODE", "1"))?;
+    }
+    Ok(())
+}
+
+/// `-o FOLDER/run.ENDING` for each ending.
+fn outputs_in(folder: &Path, endings: &[&str]) -> Vec<String> {
+    let output =
+        |ending: &&str| ["-o".to_owned(), folder.join(format!("run.{ending}")).display().to_string()];
+    endings.iter().flat_map(output).collect()
+}
+
 /// A Python of our own, below the target folder, with NumPy.
 fn python_with_numpy() -> Outcome<PathBuf> {
-    let venv = target().join("venv");
+    python_with("venv", if cfg!(windows) { "python" } else { "python3" }, &["numpy"])
+}
+
+/// A Python of our own, below the target folder, with packages; they are installed when one of them is missing.
+pub fn python_with(venv: &str, system: &str, packages: &[&'static str]) -> Outcome<PathBuf> {
+    let venv = target().join(venv);
     let python = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    if !succeeds(&mut program(&python, &["-c", "import numpy"])) {
-        let system = if cfg!(windows) { "python" } else { "python3" };
+    let module = |name: &&'static str| match name.split("==").next() {
+        Some("usd-core") => "pxr",
+        Some(module) => module,
+        None => name,
+    };
+    let modules: Vec<&str> = packages.iter().map(module).collect();
+    if !succeeds(&mut program(&python, &["-c", &format!("import {}", modules.join(", "))])) {
         run(&mut program(system, &["-m", "venv", "--clear", &venv.display().to_string()]))?;
-        run(&mut program(
-            &python,
-            &["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "numpy"],
-        ))?;
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        run(program(&python, &install).args(packages))?;
     }
     Ok(python)
 }

@@ -1,9 +1,9 @@
 //! USD and glTF held against their real readers: OpenUSD, the Khronos validator, two loaders, and Blender.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::shell::{Outcome, program, read, run, succeeds, target};
-use crate::stages::{fresh_folder, sprung};
+use crate::shell::{Outcome, program, run, succeeds, target};
+use crate::stages::{fresh_folder, python_with, sprung};
 
 /// A scene with bodies of all kinds, and its title and time from frame to frame, s.
 const SCENE: (&str, &str, &str) = ("xtask/readers.toml", "Three \"bodies\" \\ of all kinds", "0.04");
@@ -13,7 +13,7 @@ const VALIDATOR: &str = "gltf-validator@2.0.0-dev.3.10";
 /// Every vertex of every time sample has the bits of the archive of the same run, and the formats' own validators have
 /// nothing to say.
 pub fn usd() -> Outcome {
-    let python = python_with("venv-usd", "python3", &["numpy", "pxr", "pygltflib", "trimesh"])?;
+    let python = python_with("venv-usd", "python3", &["numpy", "usd-core", "pygltflib", "trimesh"])?;
     let validator = gltf_validator()?;
     let folder = fresh_folder("usd-check")?;
     let (scene, title, frame_time) = SCENE;
@@ -49,10 +49,10 @@ pub fn usd() -> Outcome {
 
 /// Blender imports the files, and shows every vertex where the archive has it, frame after frame.
 pub fn blender() -> Outcome {
-    let said = read(&mut program("python3.11", &["--version"]))
-        .map_err(|_| "Blender's Python module needs Python 3.11, and there is no python3.11".to_owned())?;
-    println!("{}", String::from_utf8_lossy(&said).trim());
-    let python = python_with("venv-blender", "python3.11", &["bpy", "numpy"])?;
+    if !succeeds(&mut program("python3.11", &["--version"])) {
+        return Err("Blender's Python module needs Python 3.11, and there is no python3.11".to_owned());
+    }
+    let python = python_with("venv-blender", "python3.11", &["bpy==4.5.*"])?;
     let folder = fresh_folder("usd-blender-check")?;
     let (scene, _, frame_time) = SCENE;
     let files = ["npz", "usdc", "usda", "usdz", "glb"]
@@ -62,24 +62,6 @@ pub fn blender() -> Outcome {
     let picture = folder.join("run.png").display().to_string();
     let mut command = program(&python, &["xtask/check_blender_usd.py", &files[0], frame_time, &picture]);
     run(command.args(&files[1..]).env("PYTHONDONTWRITEBYTECODE", "1"))
-}
-
-/// A Python of our own, below the target folder, that can import these modules.
-fn python_with(name: &str, system: &str, modules: &[&str]) -> Outcome<PathBuf> {
-    let venv = target().join(name);
-    let python = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    let import = format!("import {}", modules.join(", "));
-    if !succeeds(&mut program(&python, &["-c", &import])) {
-        run(&mut program(system, &["-m", "venv", "--clear", &venv.display().to_string()]))?;
-        let packages = modules.iter().map(|&module| match module {
-            "pxr" => "usd-core",
-            "bpy" => "bpy==4.5.*",
-            _ => module,
-        });
-        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-        run(program(&python, &install).args(packages))?;
-    }
-    Ok(python)
 }
 
 /// The folder of Node.js modules with the validator, below the target folder.

@@ -84,7 +84,7 @@ fn a_scene_that_never_comes_to_rest_can_be_left_while_it_is_settled() {
     std::fs::write(folder.path().join("rain.toml"), scene).unwrap();
     let run = ["run", "rain.toml", "--settle", "-o", "a.csv", "-o", "b.gif"];
     let (said, names) = press_ctrl_c(&mut sprung(&run), folder.path(), "a.csv.partial", 0);
-    assert_eq!(said, "sprung: interrupted\n");
+    assert_eq!(said, "Will write about 21.06 GB a.csv, about 36.0 MB b.gif.\nsprung: interrupted\n");
     assert_eq!(names, ["rain.toml"], "nothing is written");
 }
 

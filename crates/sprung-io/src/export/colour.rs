@@ -1,10 +1,10 @@
 //! Colours as formats for rendering want them.
 
 /// The linear value of an sRGB one, to four decimals: the same on every system.
-pub fn linear(srgb: u8) -> f32 {
+pub fn linear(srgb: u8) -> f64 {
     let s = f64::from(srgb) / 255.0;
     let linear = if s <= 0.040_45 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
-    ((linear * 1e4).round() / 1e4) as f32
+    (linear * 1e4).round() / 1e4
 }
 
 #[cfg(test)]

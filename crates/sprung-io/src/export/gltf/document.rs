@@ -223,7 +223,7 @@ impl Document {
             }
             mesh["primitives"] = json!([primitive]);
             meshes.push(mesh);
-            let [r, g, b] = colour.map(|part| f64::from((f64::from(linear(part)) * 1e4).round()) / 1e4);
+            let [r, g, b] = colour.map(linear);
             materials.push(json!({
                 "name": name, "doubleSided": !is_closed,
                 "pbrMetallicRoughness": {

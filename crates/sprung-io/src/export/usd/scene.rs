@@ -188,7 +188,7 @@ fn widths(width: f32) -> Attribute {
 }
 
 fn colour(srgb: [u8; 3]) -> Attribute {
-    let linear = Value::Vec3s(vec![srgb.map(linear)]);
+    let linear = Value::Vec3s(vec![srgb.map(|part| linear(part) as f32)]);
     Attribute::varying("primvars:displayColor", "color3f[]", linear).interpolated("constant")
 }
 
