@@ -18,8 +18,7 @@ pub fn usd() -> Outcome {
     let folder = fresh_folder("usd-check")?;
     let (scene, title, frame_time) = SCENE;
     let file = |ending: &str| folder.join(format!("run.{ending}")).display().to_string();
-    let [archive, crate_file, text, package, gltf] =
-        ["npz", "usdc", "usda", "usdz", "glb"].map(|ending| file(ending));
+    let [archive, crate_file, text, package, gltf] = ["npz", "usdc", "usda", "usdz", "glb"].map(file);
     let checked = |script: &str, arguments: &[&str]| {
         let mut command = program(&python, &[script]);
         run(command.args(arguments).env("PYTHONDONTWRITEBYTECODE", "1"))
