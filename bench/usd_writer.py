@@ -1,6 +1,7 @@
 """Writes what a .usdc of ours holds again with OpenUSD's own writer, and says how long that takes.
 
-    python bench/usd_writer.py FOLDER       after  cargo run --release -p sprung-io --example export_speed -- FOLDER
+    cargo run --release -p sprung-io --example export_speed -- FOLDER
+    python bench/usd_writer.py FOLDER       # with usd-core and NumPy
 
 The arrays are read before the clock starts. As a program that has a frame after the other would, each is set with
 `Attribute.Set` at its time; then the layer is saved, and flushed to the disk as ours is. The fastest of three tries counts.
@@ -27,7 +28,7 @@ def values(stage):
 
 
 def main(folder):
-    ours = os.path.join(folder, "cloth.usdc")
+    ours = os.path.join(folder, "usdc", "cloth.usdc")
     theirs = os.path.join(folder, "theirs.usdc")
     held = values(Usd.Stage.Open(ours))
     best = float("inf")

@@ -47,7 +47,7 @@ fn sprung(arguments: &[&str]) -> Command {
 fn a_simulation_keeps_its_whole_frames_and_says_where() {
     let folder = TempDir::new().unwrap();
     let run =
-        ["run", "jelly", "-o", "a.csv", "-o", "b.png", "--size", "64x48", "--seconds", "1e5", "--quiet"];
+        ["run", "jelly", "-o", "a.csv", "-o", "b.png", "--size", "64x48", "--seconds", "1e4", "--quiet"];
     let (said, names) = press_ctrl_c(&mut sprung(&run), folder.path(), "a.csv.partial", 100);
     assert_eq!(names, ["a.csv", "b.png"]);
     let csv = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
@@ -82,9 +82,9 @@ fn a_scene_that_never_comes_to_rest_can_be_left_while_it_is_settled() {
     // In free fall, where the kinetic energy has no peak; and of many points, so that it goes on for long.
     let scene = "dt = 0.001\n[[body]]\nname = \"rain\"\nlattice = { points = [30, 30, 30], spacing = 1 }\npoint_mass = 1\n";
     std::fs::write(folder.path().join("rain.toml"), scene).unwrap();
-    let run = ["run", "rain.toml", "--settle", "-o", "a.csv", "-o", "b.gif"];
+    let run = ["run", "rain.toml", "--settle", "-o", "a.csv", "-o", "b.gif", "--frames", "20"];
     let (said, names) = press_ctrl_c(&mut sprung(&run), folder.path(), "a.csv.partial", 0);
-    assert_eq!(said, "Will write about 21.06 GB a.csv, about 36.0 MB b.gif.\nsprung: interrupted\n");
+    assert_eq!(said, "sprung: interrupted\n");
     assert_eq!(names, ["rain.toml"], "nothing is written");
 }
 
