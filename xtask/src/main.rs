@@ -9,6 +9,7 @@ mod instructions;
 mod levels;
 mod shell;
 mod stages;
+mod usd;
 mod window;
 mod window_story;
 
@@ -57,7 +58,13 @@ const STAGES: &[Stage] = &[
         about: "meshio, trimesh and VTK find every vertex where the command says it is",
         run: stages::exports,
     },
+    Stage {
+        name: "usd",
+        about: "OpenUSD, the Khronos validator and loaders of glTF find what the archive has",
+        run: usd::usd,
+    },
     Stage { name: "blender", about: "so does Blender, which plays the caches", run: stages::blender },
+    Stage { name: "blender-usd", about: "and plays USD and glTF", run: usd::blender },
     Stage {
         name: "fuzz",
         about: "a minute of random scene files, and half of one of checkpoints, crashes nothing",

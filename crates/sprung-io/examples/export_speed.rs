@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use sprung::Snapshot;
 use sprung::scene::Scene;
-use sprung_io::export::{CSV, MDD, NPZ, OBJ, PC2, PLY, VTK};
+use sprung_io::export::{CSV, GLB, MDD, NPZ, OBJ, PC2, PLY, USDA, USDC, USDZ, VTK};
 use sprung_io::{Exporter, Frame, Options, RunInfo, Springs};
 
 /// Each is measured so often, and the fastest counts.
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("| format | MB/frame | frames/s | MB/s | copy, MB/s |\n|---|---:|---:|---:|---:|");
     let (default, alone) =
         (Options::default(), Options { springs: Some(Springs::None), ..Options::default() });
-    for exporter in [PC2, MDD, NPZ, PLY, OBJ, CSV, VTK] {
+    for exporter in [PC2, MDD, NPZ, USDC, USDZ, USDA, GLB, PLY, OBJ, CSV, VTK] {
         measure(exporter, "", &folder, &run, &default, &snapshots)?;
     }
     measure(VTK, ", without springs", &folder, &run, &alone, &snapshots)

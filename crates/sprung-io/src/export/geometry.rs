@@ -55,6 +55,13 @@ pub struct Part {
     pub colour: [u8; 3],
 }
 
+impl Part {
+    /// What it is called where it has to be called something.
+    pub fn label(&self) -> &str {
+        if self.name.is_empty() { "points" } else { &self.name }
+    }
+}
+
 /// A spring as a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
@@ -139,6 +146,16 @@ impl Geometry {
         Ok(geometry)
     }
 
+    /// What becomes of springs: what the user says, or else lines where a body that is exported has no surface.
+    pub fn springs_or_default(run: &RunInfo, options: &Options) -> Springs {
+        let is_chosen = |name: &String| options.bodies.as_ref().is_none_or(|bodies| bodies.contains(name));
+        let has_surface = |body| run.model.surfaces().iter().any(|surface| surface.body == body);
+        let mut bodies = run.model.bodies().iter().enumerate();
+        let any_bare =
+            options.points || bodies.any(|(index, body)| is_chosen(&body.name) && !has_surface(index));
+        options.springs.unwrap_or(if any_bare { Springs::Lines } else { Springs::None })
+    }
+
     /// The parts, in order; together they hold every vertex.
     pub fn parts(&self) -> &[Part] {
         &self.parts
@@ -220,7 +237,9 @@ impl Geometry {
             let normal = (b - a).cross(c - a);
             triangle.iter().for_each(|&corner| normals[corner as usize] += normal);
         }
-        normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+        // Through the largest component: the square of a small number may have few digits or none.
+        let unit = |normal: Vec3| (normal / normal.abs().max_element()).normalize_or_zero();
+        normals.iter_mut().for_each(|normal| *normal = unit(*normal));
     }
 
     /// A vector without a length in space, such as a force, in the file's axes.

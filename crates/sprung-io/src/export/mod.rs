@@ -1,7 +1,9 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
+mod colour;
 mod csv;
 pub mod geometry;
+mod gltf;
 mod mark;
 mod mdd;
 mod npz;
@@ -10,7 +12,9 @@ mod obj;
 mod pc2;
 mod ply;
 mod sequence;
+mod spool;
 mod stored_zip;
+mod usd;
 mod vtk;
 mod vtp;
 
@@ -24,12 +28,14 @@ use sprung::{Code, Error, Model, Params, Result, Snapshot};
 
 pub use csv::CSV;
 pub use geometry::Geometry;
+pub use gltf::GLB;
 pub use mark::{FileMark, Mark};
 pub use mdd::MDD;
 pub use npz::NPZ;
 pub use obj::OBJ;
 pub use pc2::PC2;
 pub use ply::PLY;
+pub use usd::{USDA, USDC, USDZ};
 pub use vtk::VTK;
 
 /// What an exporter may want to know about a run before its first frame.

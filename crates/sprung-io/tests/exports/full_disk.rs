@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use sprung::Code;
-use sprung_io::export::{CSV, MDD, NPZ, OBJ, PC2, PLY, VTK};
+use sprung_io::RunInfo;
+use sprung_io::export::{CSV, GLB, MDD, NPZ, OBJ, PC2, PLY, USDA, USDC, USDZ, VTK};
 
 use crate::common::{begin, give, names_in, run_of, snapshot, to_the_end};
 use crate::sequences::{Obj, Ply, Vtp};
-use crate::{caches, npz};
+use crate::{caches, glb, npz, usd};
 
 const POINTS: usize = 1000;
 
@@ -36,7 +37,9 @@ fn folder() -> PathBuf {
 
 /// Gives frames until one does not fit; then completes the file. Gives the frames that were whole.
 fn fill(exporter: sprung_io::Exporter, path: &Path, sentence: &str) -> u64 {
-    let run = run_of(POINTS);
+    // Of a clip so few frames are allowed that they have to be larger.
+    let (points, planned) = if exporter.ending == "glb" { (4 * POINTS, 257) } else { (POINTS, 1000) };
+    let run = RunInfo { frames: planned, ..run_of(points) };
     let export = begin(exporter, path, &run, 0).expect("the start fits");
     fill_up(export, &run, sentence)
 }
@@ -130,6 +133,28 @@ fn child_on_a_small_disk() {
         check_cache(&path, frames);
         std::fs::remove_file(path).expect("removed");
     }
+    for exporter in [USDC, USDA, USDZ] {
+        let path = folder().join("a").with_extension(exporter.ending);
+        let frames = fill(exporter, &path, full);
+        let samples = usd::samples(&*usd::read(&path), "/row/body.points");
+        assert_eq!(samples.len() as u64, frames);
+        for (frame, (time, found)) in samples.iter().enumerate() {
+            assert_eq!(*time, frame as f64);
+            assert_eq!(*found, usd::bits(&snapshot(POINTS, frame as u64).positions));
+        }
+        assert_eq!(names_in(&folder()).len(), 1);
+        std::fs::remove_file(path).expect("removed");
+    }
+    let path = folder().join("a.glb");
+    let frames = fill(GLB, &path, full);
+    let (times, drawn) = glb::read(&path);
+    assert_eq!(times.len() as u64, frames);
+    let first = snapshot(4 * POINTS, 0).positions;
+    for (frame, (positions, _)) in drawn[0].frames.iter().enumerate() {
+        glb::assert_near(positions, &first, &snapshot(4 * POINTS, frame as u64).positions);
+    }
+    std::fs::remove_file(path).expect("removed");
+
     for exporter in [OBJ, PLY, VTK] {
         let path = folder().join("a").with_extension(exporter.ending);
         let frames = fill(exporter, &path, full);

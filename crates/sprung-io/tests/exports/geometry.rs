@@ -8,7 +8,7 @@ use sprung_io::{Frame, Geometry, Options, RunInfo, Springs, Up};
 use crate::common::snapshot;
 
 /// A square of two triangles, a lone point and another square, with a spring from each body to the next.
-fn three_bodies() -> RunInfo {
+pub fn three_bodies() -> RunInfo {
     let mut builder = ModelBuilder::new();
     for (name, points) in [("left", 4), ("stone", 1), ("right", 4)] {
         builder.begin_body(name).expect("a name of its own");

@@ -5,8 +5,10 @@ mod common;
 #[cfg(target_os = "linux")]
 mod full_disk;
 mod geometry;
+mod glb;
 mod npz;
 #[cfg(unix)]
 mod places;
 mod sequences;
 mod tables;
+mod usd;

@@ -10,7 +10,7 @@ use std::ops::{ControlFlow, RangeInclusive};
 use std::path::Path;
 
 use sprung::{Code, Error, Result};
-use sprung_io::export::{CSV, MDD, NPZ, OBJ, PC2, PLY, VTK};
+use sprung_io::export::{CSV, GLB, MDD, NPZ, OBJ, PC2, PLY, USDA, USDC, USDZ, VTK};
 use sprung_io::{Estimate, Exporter, Options};
 
 pub use gif::GIF;
@@ -19,7 +19,8 @@ pub use png::{PNG, write_png};
 pub use recording::{Progressed, Recording, Writing};
 
 /// All exporters, chosen by the ending of a file's name.
-pub static EXPORTERS: &[Exporter] = &[CSV, NPZ, PC2, MDD, OBJ, PLY, VTK, PNG, GIF, MP4];
+pub static EXPORTERS: &[Exporter] =
+    &[CSV, NPZ, USDC, USDA, USDZ, GLB, PC2, MDD, OBJ, PLY, VTK, PNG, GIF, MP4];
 
 /// Allowed widths and heights of pictures, pixels.
 pub const SIZE_RANGE: RangeInclusive<u32> = 16..=8192;
