@@ -284,7 +284,7 @@ chain = { points = 3 }
         r#"[[body]]
 name = "a"
 "#,
-        "my.toml:1:1: body[0]: has no shape; say one of chain, grid, lattice, points",
+        "my.toml:1:1: body[0]: has no shape; say one of chain, grid, lattice, points, mesh",
     ),
     (
         "MissingField",
@@ -362,7 +362,7 @@ stifness = 5
 name = "a"
 chian = { points = 3 }
 "#,
-        r#"my.toml:3:1: body[0].chian: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces; did you mean "chain"?"#,
+        r#"my.toml:3:1: body[0].chian: is not a known key; allowed here are name, chain, grid, lattice, points, mesh, cloth, soft, net, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces; did you mean "chain"?"#,
     ),
     (
         "UnknownKey",
@@ -422,7 +422,7 @@ name = "a"
 chain = { points = 3, step = [1, 0, 0] }
 pins = [{ bocks = 3 }]
 "#,
-        "my.toml:4:11: body[0].pins[0].bocks: is not a known key; allowed here is box",
+        "my.toml:4:11: body[0].pins[0].bocks: is not a known key; allowed here are box, nearest, group, colour",
     ),
     (
         "NotFound",
@@ -826,7 +826,7 @@ name = "a"
 points = [[0, 0, 0], [1, 0, 0]]
 chain = { points = 3, step = [1, 0, 0] }
 "#,
-        "my.toml:3:10: body[0].points: says both chain and points; say only one of chain, grid, lattice, points",
+        "my.toml:3:10: body[0].points: says both chain and points; say only one of chain, grid, lattice, points, mesh",
     ),
     (
         "Conflict",
@@ -1524,7 +1524,7 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "UnknownKey",
         "body.jelly.pairs",
         "3",
-        "--set body.jelly.pairs=3: body[0].pairs: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces",
+        "--set body.jelly.pairs=3: body[0].pairs: is not a known key; allowed here are name, chain, grid, lattice, points, mesh, cloth, soft, net, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces",
     ),
     (
         "OutOfRange",

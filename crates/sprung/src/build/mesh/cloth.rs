@@ -4,8 +4,8 @@
 //! triangles at the edge; E·h (N/m) is the membrane's Young modulus times its thickness. Under a uniform strain ε a
 //! triangle of area A then holds the energy ½·E·h·A·Σ(nᵀεn)² over its three directions n. For ε = e·I that is ½·E·h·A·3e², in
 //! triangles of any shape; in equilateral ones, and in the mean over triangles turned in all directions, it is that of the
-//! isotropic membrane with Poisson's ratio 1/3 (both Lamé constants 3/8·E·h). A quad is taken as the mean of its two
-//! divisions into triangles: both its diagonals are springs, and no direction is favoured.
+//! isotropic membrane with Poisson's ratio 1/3 (both Lamé constants 3/8·E·h). Quads, and pairs of triangles that have their
+//! longest side in common, have two diagonals, and with these it can be so exactly: see `isotropy.rs`.
 //!
 //! *Bending.* A hinge with the energy ½·k·θ², k = B·ℓ²/(A₁ + A₂), bends like a plate of stiffness B (N·m): exactly so about any
 //! axis for equilateral triangles (Seung and Nelson 1988), and about a grid's axes for squares. Springs pull along lines
@@ -17,6 +17,7 @@
 
 use glam::DVec3;
 
+use super::patches::{Patch, Patches};
 use super::weld::{extent, weld};
 use super::{Mesh, MeshBody, MeshSurface, counted, summed};
 use crate::error::{Code, Error, Result};
@@ -25,9 +26,6 @@ use crate::model::{SurfaceKind, WeightedVertex};
 /// The part of the cloth's stretching stiffness that springs for bending may take over. More would leave too little for
 /// the edges where triangles are far from equilateral.
 const MOST_SHARE: f64 = 0.25;
-
-/// A triangle whose area is below this share of its longest side's square has none.
-const FLAT: f64 = 1e-10;
 
 /// What a cloth is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,17 +42,6 @@ pub struct ClothMaterial {
     pub damping: f64,
     /// Vertices closer than this are one point, m; `None`: 10⁻⁶ of the mesh's diagonal.
     pub merge: Option<f64>,
-}
-
-/// A triangle that stands for cloth.
-struct Piece {
-    corners: [u32; 3],
-    face: u32,
-    /// 1, or ½ for the triangles of a quad, which is divided both ways.
-    weight: f64,
-    area: f64,
-    /// The share of its stretching that springs for bending take over.
-    taken: f64,
 }
 
 /// One side of a piece.
@@ -74,7 +61,7 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
     let mut warnings = mesh.warnings.clone();
     warnings.extend(welded.warning);
     let points = welded.points;
-    let (mut pieces, flat) = pieces(mesh, &welded.point_of, &points);
+    let Patches { pieces, mut patches, flat } = Patches::new(mesh, &welded.point_of, &points);
     if pieces.is_empty() {
         return Err(Error::new(Code::Conflict, "has no face with an area, and a cloth is made of them"));
     }
@@ -97,13 +84,14 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
     let radius = material.bending_radius.unwrap_or(0.1 * diagonal);
     let (mut crowded, mut capped) = (0, 0);
     for edge in sides.chunk_by(|one, other| one.ends == other.ends) {
-        let mut faces: Vec<u32> = edge.iter().map(|side| pieces[side.piece].face).collect();
-        faces.dedup();
-        crowded += usize::from(faces.len() > 2);
+        let mut around: Vec<usize> = edge.iter().map(|side| pieces[side.piece].patch).collect();
+        around.sort_unstable();
+        around.dedup();
+        crowded += usize::from(around.len() > 2);
         for (index, one) in edge.iter().enumerate() {
             for other in &edge[index + 1..] {
                 let [p, q] = [&pieces[one.piece], &pieces[other.piece]];
-                if p.face == q.face || one.opposite == other.opposite || material.bending == 0.0 {
+                if p.patch == q.patch || one.opposite == other.opposite || material.bending == 0.0 {
                     continue;
                 }
                 let hinge =
@@ -118,20 +106,20 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
                 let weight = p.weight * q.weight;
                 let ends = [one.opposite.min(other.opposite), one.opposite.max(other.opposite)];
                 springs.push((ends, weight * share * whole));
-                for side in [one, other] {
-                    let piece = &mut pieces[side.piece];
-                    piece.taken += weight * share / (3.0 * piece.weight);
+                for piece in [p, q] {
+                    let patch = &mut patches[piece.patch];
+                    patch.taken += weight * share * piece.area / (3.0 * patch.area);
                 }
             }
         }
     }
     // Where many faces meet in one edge, their springs for bending could take more than there is.
-    pieces.iter_mut().for_each(|piece| piece.taken = piece.taken.min(0.9));
-    for side in &sides {
-        let [a, b] = side.ends.map(|point| points[point as usize]);
-        let piece = &pieces[side.piece];
-        let stretch = piece.weight * piece.area * (1.0 - piece.taken) / (b - a).length_squared();
-        springs.push((side.ends, material.stiffness * stretch));
+    for Patch { segments, taken, .. } in &patches {
+        for &(ends, share) in segments {
+            let [a, b] = ends.map(|point| points[point as usize]);
+            let left = share * (1.0 - taken.min(0.9));
+            springs.push((ends, material.stiffness * left / (b - a).length_squared()));
+        }
     }
 
     let mut masses = vec![0.0; points.len()];
@@ -195,47 +183,6 @@ impl Hinge {
         let shape = self.edge_squared * self.across_squared / (self.area * bent * bent);
         16.0 * bending * radius * radius * shape
     }
-}
-
-/// The triangles that stand for cloth, and how many have no area.
-fn pieces(mesh: &Mesh, point_of: &[u32], points: &[DVec3]) -> (Vec<Piece>, usize) {
-    let (mut pieces, mut flat) = (Vec::new(), 0);
-    let mut corners = Vec::new();
-    for (face, vertices) in (0u32..).zip(mesh.faces.iter()) {
-        corners.clear();
-        corners.extend(vertices.iter().map(|&vertex| point_of[vertex as usize]));
-        let mut add = |corners: [u32; 3], weight: f64| {
-            let area = 0.5 * normal(points, corners).length();
-            let [a, b, c] = corners.map(|point| points[point as usize]);
-            let longest =
-                (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-            if area > FLAT * longest {
-                pieces.push(Piece { corners, face, weight, area, taken: 0.0 });
-            } else {
-                flat += 1;
-            }
-        };
-        match corners[..] {
-            [a, b, c, d] if is_convex(points, [a, b, c, d]) => {
-                [[a, b, c], [a, c, d], [b, c, d], [b, d, a]].into_iter().for_each(|half| add(half, 0.5));
-            }
-            _ => corners.windows(2).skip(1).for_each(|side| add([corners[0], side[0], side[1]], 1.0)),
-        }
-    }
-    (pieces, flat)
-}
-
-/// Twice the area of a triangle, along its normal.
-fn normal(points: &[DVec3], corners: [u32; 3]) -> DVec3 {
-    let [a, b, c] = corners.map(|point| points[point as usize]);
-    (b - a).cross(c - a)
-}
-
-/// Whether both diagonals of a quad lie inside it.
-fn is_convex(points: &[DVec3], [a, b, c, d]: [u32; 4]) -> bool {
-    let normals = [[a, b, c], [a, c, d], [b, c, d], [b, d, a]].map(|corners| normal(points, corners));
-    let all: DVec3 = normals.iter().sum();
-    normals.iter().all(|one| one.dot(all) > FLAT * all.length_squared())
 }
 
 #[cfg(test)]

@@ -6,7 +6,9 @@
 mod cloth;
 mod fill;
 mod inside;
+mod isotropy;
 mod net;
+mod patches;
 mod soft;
 mod weld;
 
