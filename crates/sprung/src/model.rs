@@ -192,6 +192,13 @@ impl Model {
         Cow::Owned(chosen.triangles.iter().map(|corners| corners.map(|corner| first + corner)).collect())
     }
 
+    /// Whether a body has a skin of its own that its points carry along, as a soft body made from a mesh has: the points are
+    /// inside, and the skin is what is meant to be seen.
+    pub fn has_carried_skin(&self, body: usize) -> bool {
+        let mut own = self.surfaces.iter().filter(|surface| surface.body == body);
+        own.any(|surface| surface.kind == SurfaceKind::Skin && !surface.weighted().is_empty())
+    }
+
     /// The body called `name`.
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)

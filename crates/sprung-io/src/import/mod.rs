@@ -12,6 +12,7 @@ mod msh;
 mod obj;
 mod ply;
 mod stl;
+mod usd;
 mod vtk;
 mod words;
 
@@ -29,7 +30,7 @@ pub use folder::{Folder, load_meshes};
 /// The largest mesh file that is read, bytes.
 pub const MOST_BYTES: u64 = 1 << 30;
 
-/// How odd things of one kind there may be before they are counted only.
+/// Vertices in all groups together, each as often as it is named.
 const MOST_GROUP_ENTRIES: usize = 50_000_000;
 
 /// Gives the bytes of another file that the one being read refers to, by its path from there.
@@ -52,6 +53,11 @@ pub static READERS: &[Reader] = &[
     Reader { endings: &["ply"], description: "PLY, as text or binary", read: ply::read },
     Reader { endings: &["stl"], description: "STL, as text or binary", read: stl::read },
     Reader { endings: &["gltf", "glb"], description: "glTF 2.0", read: gltf::read },
+    Reader {
+        endings: &["usd", "usda", "usdc", "usdz"],
+        description: "USD, as text, binary or archive",
+        read: usd::read,
+    },
     Reader { endings: &["msh"], description: "Gmsh 2 and 4, as text or binary", read: msh::read },
     Reader { endings: &["vtk"], description: "VTK legacy, as text or binary", read: vtk::read },
 ];

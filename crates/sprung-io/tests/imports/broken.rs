@@ -10,22 +10,22 @@ const BROKEN: &[(&str, &str, &str)] = &[
     (
         "a.fbx",
         "",
-        "a.fbx: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .msh, .vtk",
+        "a.fbx: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk",
     ),
     (
         "a.object",
         "",
-        "a.object: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .msh, .vtk",
+        "a.object: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk",
     ),
     (
         "a.obk",
         "",
-        "a.obk: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .msh, .vtk; did you mean .obj?",
+        "a.obk: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk; did you mean .obj?",
     ),
     (
         "mesh",
         "",
-        "mesh: has no ending that tells its format; meshes are read from .obj, .ply, .stl, .gltf, .glb, .msh, .vtk",
+        "mesh: has no ending that tells its format; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk",
     ),
     ("a.obj", "", "a.obj: has no vertices; is it an OBJ file?"),
     ("a.obj", "v 0 0\n", "a.obj:1:1: ends where z must be"),

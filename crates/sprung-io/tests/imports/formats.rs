@@ -22,7 +22,7 @@ fn read(name: &str, bytes: &[u8]) -> Mesh {
 fn every_format_gives_the_same_tetrahedron() {
     for (name, bytes) in samples::all() {
         let mesh = read(name, &bytes);
-        let lifted = if name.contains("gl") { DVec3::Y * 2.0 } else { DVec3::ZERO };
+        let lifted = if name.contains("gl") || name.contains("usd") { DVec3::Y * 2.0 } else { DVec3::ZERO };
         let places: Vec<DVec3> =
             CORNERS.iter().map(|corner| DVec3::from_array(corner.map(f64::from)) + lifted).collect();
         if name.to_lowercase().ends_with("stl") {
@@ -45,7 +45,7 @@ fn every_format_gives_the_same_tetrahedron() {
             if has_tetrahedra { &[[0, 1, 2, 3]][..] } else { &[] },
             "{name}"
         );
-        if ["obj", "ply", "gltf", "glb"].iter().any(|ending| name.ends_with(ending)) {
+        if ["obj", "ply", "gltf", "glb", "usda", "usdc", "usdz"].iter().any(|ending| name.ends_with(ending)) {
             assert_eq!(
                 mesh.colours,
                 [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]],
@@ -58,6 +58,7 @@ fn every_format_gives_the_same_tetrahedron() {
         let expected: &[(&str, &[u32])] = match name.rsplit_once('.').unwrap().1 {
             "obj" => &[("solid", all), ("bottom", &[0, 1, 2]), ("rest", all)],
             "gltf" | "glb" => &[("tetra", all)],
+            "usda" | "usdc" | "usdz" => &[("tetra", all), ("bottom", &[0, 1, 2])],
             "msh" => &[("inside", all)],
             "stl" => &[("tetra", &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11])],
             _ => &[],
@@ -70,6 +71,18 @@ fn every_format_gives_the_same_tetrahedron() {
             reader.endings.iter().any(|ending| name.to_lowercase().ends_with(ending))
         };
         assert!(samples::all().iter().any(has_sample), "{}", reader.description);
+    }
+}
+
+/// Writes the samples for the fuzzer, a folder for each reader, where it is asked for.
+#[test]
+fn samples_are_written_where_asked_for() {
+    let Some(folder) = std::env::var_os("SPRUNG_WRITE_SAMPLES") else { return };
+    for (name, bytes) in samples::all() {
+        let reader = sprung_io::import::reader_for(name).unwrap();
+        let folder = std::path::Path::new(&folder).join(reader.endings[0]);
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join(name), bytes).unwrap();
     }
 }
 
@@ -90,6 +103,20 @@ fn a_buffer_inside_a_gltf_text_is_read() {
         .collect();
     let text = samples::gltf(Some(&format!("data:application/octet-stream;base64,{encoded}")));
     assert_eq!(read("a.gltf", text.as_bytes()), read("a.glb", &samples::glb()));
+}
+
+/// Transforms, units and the up axis of USD, against places computed by Pixar's library; the file is made by hand.
+#[test]
+fn usd_places_what_lies_in_transforms() {
+    let text = b"#usda 1.0\n(\n metersPerUnit = 0.01\n upAxis = \"Z\"\n)\ndef Xform \"a\" {\n float3 xformOp:rotateXYZ = (10, 20, 30)\n\
+        float3 xformOp:scale = (1, 2, 3)\n uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\", \"xformOp:scale\"]\n def Xform \"c\" {\n\
+        quatf xformOp:orient = (0.5, 0.5, 0.5, 0.5)\n matrix4d xformOp:transform = ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (1, 2, 3, 1) )\n\
+        uniform token[] xformOpOrder = [\"xformOp:orient\", \"xformOp:transform\"]\n def Mesh \"m\" {\n point3f[] points = [(POINTS)]\n} } }\n";
+    let text = String::from_utf8(text.to_vec()).unwrap().replace("(POINTS)", "(0.5, 0.25, 0.1)");
+    let found = read("a.usda", text.as_bytes()).positions[0];
+    let exact = DVec3::new(0.037548895485895115, 0.05675827193378713, -0.04225907020841322);
+    // Numbers in degrees and float32 halves leave seven digits.
+    assert!((found - exact).length() < 1e-8, "{found}");
 }
 
 #[test]

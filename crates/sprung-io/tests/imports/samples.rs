@@ -178,6 +178,59 @@ pub fn glb() -> Vec<u8> {
     bytes
 }
 
+/// Text USD, as Pixar's library writes it.
+pub const USDA: &str = r#"#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Y"
+)
+
+def Xform "root"
+{
+    double3 xformOp:translate = (0, 1, 0)
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+
+    def Mesh "tetra"
+    {
+        int[] faceVertexCounts = [3, 3, 3, 3]
+        int[] faceVertexIndices = [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        color3f[] primvars:displayColor = [(1, 0, 0), (1, 0, 0), (0, 0, 1), (0, 0, 1)] (
+            interpolation = "vertex"
+        )
+        double3 xformOp:translate = (0, 1, 0)
+        uniform token[] xformOpOrder = ["xformOp:translate"]
+
+        def GeomSubset "bottom"
+        {
+            uniform token elementType = "face"
+            uniform token familyName = ""
+            int[] indices = [0]
+        }
+    }
+}
+"#;
+
+/// The same as binary USD by the same library, in hexadecimal.
+pub fn usdc() -> Vec<u8> {
+    let digits: Vec<u8> =
+        include_bytes!("tetra.usdc.hex").iter().copied().filter(u8::is_ascii_hexdigit).collect();
+    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+    digits.chunks(2).map(byte).collect()
+}
+
+/// An archive that stores it.
+pub fn usdz() -> Vec<u8> {
+    let content = usdc();
+    let mut bytes = b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0".to_vec();
+    bytes.extend([0; 4]);
+    bytes.extend((content.len() as u32).to_le_bytes().repeat(2));
+    bytes.extend([6, 0, 0, 0]);
+    bytes.extend(b"a.usdc");
+    bytes.extend(content);
+    bytes
+}
+
 /// One of every format and form: name and bytes.
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     vec![
@@ -189,6 +242,9 @@ pub fn all() -> Vec<(&'static str, Vec<u8>)> {
         ("binary.STL", stl_binary()),
         ("outside.gltf", gltf(Some("buf%20fer.bin")).into_bytes()),
         ("a.glb", glb()),
+        ("a.usda", USDA.as_bytes().to_vec()),
+        ("a.usdc", usdc()),
+        ("a.usdz", usdz()),
         ("two.msh", MSH2.as_bytes().to_vec()),
         ("four.msh", MSH4.as_bytes().to_vec()),
         ("binary2.msh", msh_binary(false)),

@@ -231,7 +231,7 @@ mod tests {
         let cells = lattice([3, 3, 3]);
         for rule in [Rule::Winding, Rule::Parity] {
             let total: f32 = shares(&points, &triangles, &cells, rule).expect("small").iter().sum();
-            // Volume 4/3. The sum over rays a quarter apart is that of |x| + |y| < 1 there: 4·(h³/…)… to second order in ¼.
+            // Volume 4/3; to second order in the distance of rays, a quarter.
             assert!((f64::from(total) - 4.0 / 3.0).abs() < 0.25 * 0.25, "{total}");
         }
     }
