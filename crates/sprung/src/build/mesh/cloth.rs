@@ -5,7 +5,7 @@
 //! triangle of area A then holds the energy ½·E·h·A·Σ(nᵀεn)² over its three directions n. For ε = e·I that is ½·E·h·A·3e², in
 //! triangles of any shape; in equilateral ones, and in the mean over triangles turned in all directions, it is that of the
 //! isotropic membrane with Poisson's ratio 1/3 (both Lamé constants 3/8·E·h). Quads, and pairs of triangles that have their
-//! longest side in common, have two diagonals, and with these it can be so exactly: see `isotropy.rs`.
+//! longest side in common, have two diagonals, and with these it can be so, exactly or nearly: see `isotropy.rs`.
 //!
 //! *Bending.* A hinge with the energy ½·k·θ², k = B·ℓ²/(A₁ + A₂), bends like a plate of stiffness B (N·m): exactly so about any
 //! axis for equilateral triangles (Seung and Nelson 1988), and about a grid's axes for squares. Springs pull along lines
