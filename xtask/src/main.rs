@@ -53,7 +53,11 @@ const STAGES: &[Stage] = &[
     },
     Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
     Stage { name: "fuzz", about: "a minute of random scene files crashes nothing", run: stages::fuzz },
-    Stage { name: "fuzz-meshes", about: "nor do random mesh files, for each reader in turn", run: stages::fuzz_meshes },
+    Stage {
+        name: "fuzz-meshes",
+        about: "nor do random mesh files, for each reader in turn",
+        run: stages::fuzz_meshes,
+    },
     Stage {
         name: "licences",
         about: "licences, duplicates and sources of dependencies",

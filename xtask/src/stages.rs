@@ -129,11 +129,14 @@ fn python_with_numpy() -> Outcome<PathBuf> {
 pub fn fuzz_meshes() -> Outcome {
     let seeds = fresh_folder("fuzz-mesh-seeds")?;
     // A test writes the samples that it reads: they are made there, and are of use here.
-    let mut samples = cargo(&["test", "--locked", "--quiet", "-p", "sprung-io", "--test", "imports", "formats"]);
+    let mut samples =
+        cargo(&["test", "--locked", "--quiet", "-p", "sprung-io", "--test", "imports", "formats"]);
     run(samples.env("SPRUNG_WRITE_SAMPLES", &seeds))?;
     let crashes = target().join("fuzz-crashes");
     fs::create_dir_all(&crashes).map_err(|error| format!("{} cannot be made: {error}", crashes.display()))?;
-    for entry in fs::read_dir(&seeds).map_err(|error| format!("the samples cannot be read: {error}"))?.flatten() {
+    for entry in
+        fs::read_dir(&seeds).map_err(|error| format!("the samples cannot be read: {error}"))?.flatten()
+    {
         let ending = entry.file_name().to_string_lossy().into_owned();
         let found = target().join(format!("fuzz-corpus-{ending}"));
         fs::create_dir_all(&found).map_err(|error| format!("{} cannot be made: {error}", found.display()))?;
@@ -146,7 +149,13 @@ pub fn fuzz_meshes() -> Outcome {
             .args([&found, &entry.path()])
             .arg(format!("-artifact_prefix={}/{ending}-", crashes.display()))
             .arg(format!("-max_total_time={FUZZ_SECONDS_PER_READER}"))
-            .args(["-max_len=4096", "-timeout=10", "-rss_limit_mb=1024", "-print_final_stats=1", "-verbosity=0"]);
+            .args([
+                "-max_len=4096",
+                "-timeout=10",
+                "-rss_limit_mb=1024",
+                "-print_final_stats=1",
+                "-verbosity=0",
+            ]);
         run(&mut command).map_err(|reason| {
             format!("{reason}; the input that did it is in target/fuzz-crashes, see fuzz/README.md for how to go on")
         })?;

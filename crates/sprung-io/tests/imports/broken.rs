@@ -105,6 +105,12 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "{\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}]}",
         "a.gltf: accessors[0]: has no bufferView and more than a million entries",
     ),
+    ("a.usda", "#usda 1.0\n", "a.usda: has no prim of the type Mesh with points"),
+    (
+        "a.usda",
+        "#usda 1.0\ndef Mesh \"m\" {\npoints = [1, 2]\nfaceVertexCounts = [3]\nfaceVertexIndices = [0, 1, 2]\n}\n",
+        "a.usda: has no prim of the type Mesh with points",
+    ),
     (
         "a.msh",
         "$MeshFormat\n1.0 0 8\n",

@@ -152,7 +152,7 @@ impl Reading<'_> {
 
     fn add(&mut self, prim: &Prim, world: &DMat4) -> Result<()> {
         let wrong = |code, sentence: String| Error::new(code, sentence).at_field(prim.name.clone());
-        let Some(points) = prim.numbers("points").filter(|points| !points.is_empty()) else { return Ok(()) };
+        let Some(points) = prim.numbers("points").filter(|points| points.len() >= 3) else { return Ok(()) };
         let first = self.mesh.positions.len() as u32;
         for (vertex, place) in points.chunks_exact(3).enumerate() {
             let place = world.transform_point3(Vector::from_slice(place));
