@@ -71,6 +71,11 @@ const STAGES: &[Stage] = &[
         run: stages::fuzz,
     },
     Stage {
+        name: "fuzz-meshes",
+        about: "nor do random mesh files, for each reader in turn",
+        run: stages::fuzz_meshes,
+    },
+    Stage {
         name: "licences",
         about: "licences, duplicates and sources of dependencies",
         run: stages::licences,

@@ -8,6 +8,9 @@ use crate::shell::{Outcome, cargo, program, read, root, run, succeeds, target};
 /// How long the fuzzer runs on scenes, and on checkpoints.
 const FUZZ_SECONDS: [u32; 2] = [60, 30];
 
+/// The same for each reader of meshes.
+const FUZZ_SECONDS_PER_READER: u32 = 15;
+
 pub fn fmt() -> Outcome {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
     run(&mut cargo(&["fmt", "--manifest-path", "fuzz/Cargo.toml", "--check"]))
@@ -175,6 +178,44 @@ pub fn python_with(venv: &str, system: &str, packages: &[&'static str]) -> Outco
         run(program(&python, &install).args(packages))?;
     }
     Ok(python)
+}
+
+/// Random mesh files for every reader, grown from a small one of each form. See fuzz/README.md.
+pub fn fuzz_meshes() -> Outcome {
+    let seeds = fresh_folder("fuzz-mesh-seeds")?;
+    // A test writes the samples that it reads: they are made there, and are of use here.
+    let mut samples =
+        cargo(&["test", "--locked", "--quiet", "-p", "sprung-io", "--test", "imports", "formats"]);
+    run(samples.env("SPRUNG_WRITE_SAMPLES", &seeds))?;
+    let crashes = target().join("fuzz-crashes");
+    fs::create_dir_all(&crashes).map_err(|error| format!("{} cannot be made: {error}", crashes.display()))?;
+    for entry in
+        fs::read_dir(&seeds).map_err(|error| format!("the samples cannot be read: {error}"))?.flatten()
+    {
+        let ending = entry.file_name().to_string_lossy().into_owned();
+        let found = target().join(format!("fuzz-corpus-{ending}"));
+        fs::create_dir_all(&found).map_err(|error| format!("{} cannot be made: {error}", found.display()))?;
+        let mut command = cargo(&["run", "--locked", "--release", "--bin", "mesh", "--"]);
+        command
+            .current_dir(root().join("fuzz"))
+            .env_remove("RUSTFLAGS")
+            .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            .env("SPRUNG_READER", &ending)
+            .args([&found, &entry.path()])
+            .arg(format!("-artifact_prefix={}/{ending}-", crashes.display()))
+            .arg(format!("-max_total_time={FUZZ_SECONDS_PER_READER}"))
+            .args([
+                "-max_len=4096",
+                "-timeout=10",
+                "-rss_limit_mb=1024",
+                "-print_final_stats=1",
+                "-verbosity=0",
+            ]);
+        run(&mut command).map_err(|reason| {
+            format!("{reason}; the input that did it is in target/fuzz-crashes, see fuzz/README.md for how to go on")
+        })?;
+    }
+    Ok(())
 }
 
 /// Random scene files, grown from those in `scenes/` by what code they reach, and random checkpoints. See fuzz/README.md.

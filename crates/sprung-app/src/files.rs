@@ -111,7 +111,16 @@ pub fn read_scene(path: &Path) -> Result<Source, Refused> {
     // Small as scene files are (most have less than 2 KiB), reading one does not hold up the window.
     let bytes =
         sprung_io::files::read_ordinary(path, MAX_BYTES).map_err(|error| Refused { error, text: None })?;
-    parse_scene(&bytes, &path.display().to_string())
+    let mut source = parse_scene(&bytes, &path.display().to_string())?;
+    // What is odd about a mesh is said by the command, which has a place for notes.
+    match sprung_io::import::load_meshes(&mut source.scene, Some(path)) {
+        Ok(_) => Ok(source),
+        Err(error) => {
+            // The line may be one of the mesh's file.
+            let is_own = error.place().file.as_deref() == Some(&*path.display().to_string());
+            Err(Refused { error, text: String::from_utf8(bytes).ok().filter(|_| is_own) })
+        }
+    }
 }
 
 /// A scene from the bytes of a file of this name.

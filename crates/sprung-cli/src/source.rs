@@ -6,9 +6,10 @@ use std::sync::Arc;
 use sprung::scene::{self, Scene};
 use sprung::{Code, Error, Inline, Result, Simulation, Workers};
 use sprung_io::checkpoint::{self, Saved, Stored};
-use sprung_io::files;
+use sprung_io::{files, import};
 
 use crate::args::SceneArgs;
+use crate::console::note;
 use crate::memory;
 
 /// The scene with its changes, and the name to call it by.
@@ -25,6 +26,9 @@ pub fn scene_and_file(args: &SceneArgs) -> Result<(String, Scene, Option<PathBuf
             return Err(error.in_file(format!("--set {assignment}")));
         };
         scene.set(key.trim(), value.trim())?;
+    }
+    for sentence in import::load_meshes(&mut scene, file.as_deref())? {
+        note(format_args!("Note: {sentence}."));
     }
     Ok((name, scene, file))
 }

@@ -1,10 +1,11 @@
-//! Files: motion out, checkpoints, and the one place that knows paths.
+//! Files: meshes in, motion out, checkpoints, and the one place that knows paths.
 //!
 //! Exporters write to anything that is [`std::io::Write`] + [`std::io::Seek`]; [`files`] alone knows paths.
 
 pub mod checkpoint;
 pub mod export;
 pub mod files;
+pub mod import;
 mod pack;
 
 pub use export::{

@@ -71,7 +71,8 @@ impl Look {
         let depth = camera.view(centre).z.max(camera.near);
         let crowded = model.point_count() > CROWD || self.spacing * camera.focal / depth < CLOSEST_PIXELS;
         let has_surface = |body| model.surfaces().iter().any(|surface| surface.body == body);
-        self.body_in_detail = (0..model.bodies().len()).map(|body| !(crowded && has_surface(body))).collect();
+        let covered = |body| has_surface(body) && (crowded || model.has_carried_skin(body));
+        self.body_in_detail = (0..model.bodies().len()).map(|body| !covered(body)).collect();
         let any_wires = self.wires(model).next().is_some();
         self.any_wires = any_wires;
     }
@@ -79,12 +80,13 @@ impl Look {
     /// The shapes of one moment.
     pub fn shapes(&self, model: &Model, params: &Params, positions: &[Vec3], camera: &Camera) -> Shapes {
         let mut shapes = Shapes::default();
-        let seen: Vec<Option<Projected>> =
-            positions.iter().map(|&position| camera.project(position)).collect();
+        // Points, and after them the vertices that they carry.
+        let all = model.with_weighted(positions);
+        let seen: Vec<Option<Projected>> = all.iter().map(|&position| camera.project(position)).collect();
         let open = if self.any_wires { openness(model, positions) } else { vec![1.0; positions.len()] };
         self.add_wires(&mut shapes, model, params, positions, camera, &open);
         self.add_balls(&mut shapes, model, params, camera, &seen, &open);
-        self.add_surfaces(&mut shapes, model, positions, camera, &seen);
+        self.add_surfaces(&mut shapes, model, &all, camera, &seen);
         shapes
     }
 
@@ -175,7 +177,8 @@ impl Look {
         seen: &[Option<Projected>],
     ) {
         let mut normals = Vec::new();
-        for surface in model.surfaces() {
+        for (index, surface) in model.surfaces().iter().enumerate() {
+            let triangles = model.triangles_in_list(index);
             let detail = self.body_in_detail[surface.body];
             let tints = match (surface.kind, detail) {
                 // Inside a skin of a solid shown in detail nothing could be seen.
@@ -187,14 +190,14 @@ impl Look {
             // Normals of the corners: the sum over their triangles, weighted by area as cross products are.
             normals.clear();
             normals.resize(positions.len(), Vec3::ZERO);
-            for triangle in &surface.triangles {
+            for triangle in triangles.iter() {
                 let [a, b, c] = triangle.map(|point| positions[point as usize]);
                 let normal = (b - a).cross(c - a);
                 triangle.iter().for_each(|&point| normals[point as usize] += normal);
             }
             let colours = tints.map(srgb);
-            shapes.triangles.reserve(surface.triangles.len());
-            for triangle in &surface.triangles {
+            shapes.triangles.reserve(triangles.len());
+            for triangle in triangles.iter() {
                 let corner = |point: u32| {
                     let Projected { pixel, depth } = seen[point as usize]?;
                     let normal = camera.turn(normals[point as usize]).normalize_or(-Vec3::Z);

@@ -34,7 +34,7 @@ pub use error::{Code, Error, Place, Result};
 pub use glam::{DVec3, Vec3};
 pub use history::Event;
 pub use kernel::Level;
-pub use model::{Body, Joint, Model, Surface, SurfaceKind};
+pub use model::{Body, Joint, Model, Surface, SurfaceKind, SurfaceVertices, WeightedVertex};
 pub use params::{Change, Grab, Params};
 pub use probe::{PointReading, SpringReading};
 pub use settle::{SettleOptions, Settled};

@@ -1,10 +1,13 @@
 //! The model: what is joined to what. Immutable once built, shared by every run that uses it.
 
+use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+
+use glam::Vec3;
 
 use crate::buckets::Buckets;
 use crate::state::Fnv;
-use std::sync::{Arc, OnceLock};
 
 /// A named part of a model: a range of its points, and of the springs among them.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,15 +38,65 @@ pub enum SurfaceKind {
     Skin,
 }
 
-/// Triangles over the points of one body, for drawing and export.
+/// Triangles of one body, for drawing and export.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// The body, as an index into [`Model::bodies`].
     pub body: usize,
     /// Open sheet or closed skin.
     pub kind: SurfaceKind,
-    /// Corner points of each triangle, as indices into the model's points.
+    /// Where its vertices are.
+    pub vertices: SurfaceVertices,
+    /// Corners of each triangle: indices into the model's points, or into the list of weighted vertices.
     pub triangles: Vec<[u32; 3]>,
+}
+
+/// What the corners of a surface's triangles are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SurfaceVertices {
+    /// Points of the model.
+    Points,
+    /// The vertices of an artist's mesh, in the mesh's order, carried along by the points.
+    Weighted(Vec<WeightedVertex>),
+}
+
+/// A vertex that up to four points carry along: the sum of their positions, each times its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeightedVertex {
+    /// Indices into the model's points. Points that are not needed have weight 0.
+    pub points: [u32; 4],
+    /// Their weights, which add up to 1.
+    pub weights: [f32; 4],
+}
+
+impl WeightedVertex {
+    /// One that lies on a point.
+    pub fn on(point: u32) -> Self {
+        Self { points: [point; 4], weights: [1.0, 0.0, 0.0, 0.0] }
+    }
+
+    /// The sum over any values that the points have: positions (m) or velocities (m/s), in the model's order.
+    ///
+    /// As the weights add up to 1, differences from the first point will do: what rounding leaves of them does not grow
+    /// with the distance from the origin, and a vertex that lies on a point is there to the bit.
+    ///
+    /// # Panics
+    /// If there are fewer values than points.
+    pub fn of(&self, values: &[Vec3]) -> Vec3 {
+        let first = values[self.points[0] as usize];
+        let moved = |k: usize| (values[self.points[k] as usize] - first) * self.weights[k];
+        first + (moved(1) + moved(2) + moved(3))
+    }
+}
+
+impl Surface {
+    /// The weighted vertices; none if the triangles stand on points.
+    pub fn weighted(&self) -> &[WeightedVertex] {
+        match &self.vertices {
+            SurfaceVertices::Points => &[],
+            SurfaceVertices::Weighted(vertices) => vertices,
+        }
+    }
 }
 
 /// Topology: points, springs, bodies, surfaces. Made by [`ModelBuilder`](crate::ModelBuilder), never changed after.
@@ -127,6 +180,43 @@ impl Model {
     /// The surfaces of those bodies that have one.
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
+    }
+
+    /// How many weighted vertices all surfaces have together.
+    pub fn weighted_count(&self) -> usize {
+        self.surfaces.iter().map(|surface| surface.weighted().len()).sum()
+    }
+
+    /// The values of all points (positions, velocities), and after them those of all weighted vertices, surface by surface:
+    /// for a renderer that wants one list. [`triangles_in_list`](Self::triangles_in_list) are the triangles over it.
+    pub fn with_weighted<'a>(&self, values: &'a [Vec3]) -> Cow<'a, [Vec3]> {
+        let count = self.weighted_count();
+        if count == 0 || values.len() != self.point_count {
+            return Cow::Borrowed(values);
+        }
+        let mut all = Vec::with_capacity(values.len() + count);
+        all.extend_from_slice(values);
+        let vertices = self.surfaces.iter().flat_map(Surface::weighted);
+        all.extend(vertices.map(|vertex| vertex.of(values)));
+        Cow::Owned(all)
+    }
+
+    /// The triangles of a surface, by its index, as indices into the list that [`with_weighted`](Self::with_weighted) makes.
+    pub fn triangles_in_list(&self, surface: usize) -> Cow<'_, [[u32; 3]]> {
+        let Some(chosen) = self.surfaces.get(surface) else { return Cow::Borrowed(&[]) };
+        if matches!(chosen.vertices, SurfaceVertices::Points) {
+            return Cow::Borrowed(&chosen.triangles);
+        }
+        let before = self.surfaces[..surface].iter().map(|surface| surface.weighted().len()).sum::<usize>();
+        let first = (self.point_count + before) as u32;
+        Cow::Owned(chosen.triangles.iter().map(|corners| corners.map(|corner| first + corner)).collect())
+    }
+
+    /// Whether a body has a skin of its own that its points carry along, as a soft body made from a mesh has: the points are
+    /// inside, and the skin is what is meant to be seen.
+    pub fn has_carried_skin(&self, body: usize) -> bool {
+        let mut own = self.surfaces.iter().filter(|surface| surface.body == body);
+        own.any(|surface| surface.kind == SurfaceKind::Skin && !surface.weighted().is_empty())
     }
 
     /// The body called `name`.

@@ -284,7 +284,7 @@ chain = { points = 3 }
         r#"[[body]]
 name = "a"
 "#,
-        "my.toml:1:1: body[0]: has no shape; say one of chain, grid, lattice, points",
+        "my.toml:1:1: body[0]: has no shape; say one of chain, grid, lattice, points, mesh",
     ),
     (
         "MissingField",
@@ -362,7 +362,7 @@ stifness = 5
 name = "a"
 chian = { points = 3 }
 "#,
-        r#"my.toml:3:1: body[0].chian: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces; did you mean "chain"?"#,
+        r#"my.toml:3:1: body[0].chian: is not a known key; allowed here are name, chain, grid, lattice, points, mesh, cloth, soft, net, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces; did you mean "chain"?"#,
     ),
     (
         "UnknownKey",
@@ -422,7 +422,7 @@ name = "a"
 chain = { points = 3, step = [1, 0, 0] }
 pins = [{ bocks = 3 }]
 "#,
-        "my.toml:4:11: body[0].pins[0].bocks: is not a known key; allowed here is box",
+        "my.toml:4:11: body[0].pins[0].bocks: is not a known key; allowed here are box, nearest, group, colour",
     ),
     (
         "NotFound",
@@ -826,7 +826,7 @@ name = "a"
 points = [[0, 0, 0], [1, 0, 0]]
 chain = { points = 3, step = [1, 0, 0] }
 "#,
-        "my.toml:3:10: body[0].points: says both chain and points; say only one of chain, grid, lattice, points",
+        "my.toml:3:10: body[0].points: says both chain and points; say only one of chain, grid, lattice, points, mesh",
     ),
     (
         "Conflict",
@@ -1420,6 +1420,88 @@ rest_scale = 1e9
 "#,
         r#"my.toml:9:14: body[0].springs[0].except[0].rest_scale: makes a spring 1e10 m long at rest, and it may be at most 1e9 m"#,
     ),
+    (
+        "MissingField",
+        r#"[[body]]
+name = "a"
+mesh = "a.obj"
+"#,
+        r#"my.toml:1:1: body[0]: does not say what its mesh becomes; say one of cloth, soft, net"#,
+    ),
+    (
+        "Conflict",
+        r#"[[body]]
+name = "a"
+points = [[0, 0, 0]]
+net = { stiffness = 1 }
+"#,
+        r#"my.toml:4:7: body[0].net: is made from a mesh, and this body has none; say mesh = "FILE""#,
+    ),
+    (
+        "MissingField",
+        r#"[[body]]
+name = "a"
+mesh = "a.obj"
+cloth = { stiffness = 1 }
+"#,
+        r#"my.toml:4:9: body[0].cloth.density: is missing; say how heavy the material is, or the body's body_mass"#,
+    ),
+    (
+        "Conflict",
+        r#"[[body]]
+name = "a"
+mesh = "a.obj"
+body_mass = 1
+cloth = { stiffness = 1, density = 1 }
+"#,
+        r#"my.toml:5:36: body[0].cloth.density: is said besides the body's body_mass; one of them is enough"#,
+    ),
+    (
+        "OutOfRange",
+        r#"[[body]]
+name = "a"
+mesh = "a.obj"
+soft = { stiffness = 1, density = 1, spacing = 0 }
+"#,
+        r#"my.toml:4:48: body[0].soft.spacing: is 0 m, and must be from 1e-9 to 1e9 m"#,
+    ),
+    (
+        "WrongType",
+        r#"[[body]]
+name = "a"
+mesh = 3
+"#,
+        r#"my.toml:3:8: body[0].mesh: is 3, and must be the name of a mesh file, or { file = …, merge = … }"#,
+    ),
+    (
+        "Conflict",
+        r#"[[body]]
+name = "a"
+points = [[0, 0, 0]]
+pins = [{ group = "top" }]
+"#,
+        r#"my.toml:4:19: body[0].pins[0].group: is a group, and only meshes have those; pin points by number, or by a box"#,
+    ),
+    (
+        "NotFound",
+        r#"[[body]]
+name = "a"
+mesh = "a.obj"
+net = { stiffness = 1 }
+pins = ["top"]
+"#,
+        r#"my.toml:5:9: body[0].pins[0]: is "top", but a mesh has no named sides; say { group = "top" }, or a box or a nearest place"#,
+    ),
+    (
+        "Conflict",
+        r#"[[body]]
+name = "a"
+mesh = "a.obj"
+net = { stiffness = 1 }
+pins = [{ group = "top", colour = [1, 0, 0] }]
+"#,
+        r#"my.toml:5:35: body[0].pins[0].colour: says both group and colour; say only one of box, nearest, group, colour"#,
+    ),
 ];
 
 /// (code, key, value, message): changes that are refused, to the scene of the jelly.
@@ -1524,7 +1606,7 @@ const BAD_CHANGES: &[(&str, &str, &str, &str)] = &[
         "UnknownKey",
         "body.jelly.pairs",
         "3",
-        "--set body.jelly.pairs=3: body[0].pairs: is not a known key; allowed here are name, chain, grid, lattice, points, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces",
+        "--set body.jelly.pairs=3: body[0].pairs: is not a known key; allowed here are name, chain, grid, lattice, points, mesh, cloth, soft, net, scale, rotation, position, point_mass, body_mass, velocity, pins, springs, forces",
     ),
     (
         "OutOfRange",

@@ -16,7 +16,7 @@ mod stage_arrows;
 
 use std::sync::Arc;
 
-use glam::{Vec2, vec2};
+use glam::{Vec2, Vec3, vec2};
 use sprung_driver::Report;
 use sprung_render::appearance::{Points, Springs, Surfaces};
 use sprung_render::camera::Bounds;
@@ -209,11 +209,15 @@ impl View {
             let blend = report.blend as f32;
             let (before, now) = (&report.before.positions, &report.now.positions);
             let camera = state.camera.camera(size);
-            let seen = if before.len() == now.len() {
-                Seen::new(&camera, before.iter().zip(now).map(|(before, now)| before.lerp(*now, blend)))
-            } else {
-                Seen::new(&camera, now.iter().copied())
-            };
+            let is_between = before.len() == now.len();
+            let shown =
+                |point: usize| if is_between { before[point].lerp(now[point], blend) } else { now[point] };
+            let mut seen = Seen::new(&camera, (0..now.len()).map(shown));
+            let model = &report.opened.model;
+            if model.weighted_count() > 0 && now.len() == model.point_count() {
+                let positions: Vec<Vec3> = (0..now.len()).map(shown).collect();
+                seen = seen.carrying(&camera, model, &positions);
+            }
             self.seen = (Some((report.clone(), state.camera, size)), seen);
         }
     }

@@ -28,6 +28,8 @@ pub struct Seen {
     pub pixels: Vec<Vec2>,
     /// Distance of each along the view, m; infinite where it is not seen at all.
     pub depths: Vec<f32>,
+    /// The same of the vertices that points carry along, surface by surface.
+    carried: Vec<(Vec2, f32)>,
 }
 
 impl Seen {
@@ -39,7 +41,28 @@ impl Seen {
             pixels.push(seen.map_or(Vec2::NAN, |seen| seen.pixel));
             depths.push(seen.map_or(f32::INFINITY, |seen| seen.depth));
         }
-        Self { pixels, depths }
+        Self { pixels, depths, carried: Vec::new() }
+    }
+
+    /// Looks at the vertices that points at some positions carry along, too.
+    pub fn carrying(mut self, camera: &Camera, model: &Model, positions: &[Vec3]) -> Self {
+        let vertices = model.surfaces().iter().flat_map(sprung::Surface::weighted);
+        let seen = vertices.map(|vertex| camera.project(vertex.of(positions)));
+        self.carried = seen
+            .map(|seen| seen.map_or((Vec2::NAN, f32::INFINITY), |seen| (seen.pixel, seen.depth)))
+            .collect();
+        self
+    }
+
+    /// Where a corner of a surface appears: a point, or a vertex that comes after all points.
+    fn corner(&self, corner: u32) -> (Vec2, f32) {
+        let corner = corner as usize;
+        match self.pixels.get(corner) {
+            Some(&pixel) => (pixel, self.depths[corner]),
+            None => {
+                self.carried.get(corner - self.pixels.len()).copied().unwrap_or((Vec2::NAN, f32::INFINITY))
+            }
+        }
     }
 
     /// Where a point appears, if it does.
@@ -55,7 +78,7 @@ impl Seen {
             let along = u8::from(pixel.y < low.y) << 2 | u8::from(pixel.y > high.y) << 3;
             if pixel.is_nan() { UNSEEN } else { aside | along }
         };
-        self.pixels.iter().map(side).collect()
+        self.pixels.iter().chain(self.carried.iter().map(|(pixel, _)| pixel)).map(side).collect()
     }
 
     /// Both ends of a spring, if they are seen.
@@ -79,7 +102,7 @@ pub fn pick(
     let front = Front::new(model, drawn, seen, cursor, reach * POINT_REACH);
     let point = nearest_point(seen, drawn, cursor, reach * POINT_REACH, &front).map(Pick::Point);
     let spring = || nearest_spring(model, cut, drawn.springs(), seen, cursor, reach * SPRING_REACH, &front);
-    let corner = || front.corner(seen, cursor).map(Pick::Point);
+    let corner = || front.corner(model, seen, cursor).map(Pick::Point);
     point.or_else(|| spring().map(Pick::Spring)).or_else(corner)
 }
 
@@ -197,13 +220,20 @@ impl Front {
             return front;
         }
         let sides = seen.sides(cursor - half, cursor + half);
-        for surface in model.surfaces().iter().filter(|surface| drawn.bodies[surface.body].surface) {
-            for &[a, b, c] in &surface.triangles {
-                let [p, q, r] = [sides[a as usize], sides[b as usize], sides[c as usize]];
+        for (index, surface) in model.surfaces().iter().enumerate() {
+            if !drawn.bodies[surface.body].surface {
+                continue;
+            }
+            for &[a, b, c] in model.triangles_in_list(index).iter() {
+                let [p, q, r] = [a, b, c].map(|corner| sides.get(corner as usize).copied().unwrap_or(UNSEEN));
                 if p & q & r == 0 && (p | q | r) < 16 {
-                    let corners = [a, b, c].map(|point| seen.pixels[point as usize]);
-                    let depths = [a, b, c].map(|point| seen.depths[point as usize]);
-                    front.draw([a, b, c], corners, depths, cursor);
+                    let places = [a, b, c].map(|corner| seen.corner(corner));
+                    front.draw(
+                        [a, b, c],
+                        places.map(|(pixel, _)| pixel),
+                        places.map(|(_, depth)| depth),
+                        cursor,
+                    );
                 }
             }
         }
@@ -257,10 +287,17 @@ impl Front {
         depth > behind * 1.0005
     }
 
-    fn corner(&self, seen: &Seen, cursor: Vec2) -> Option<usize> {
+    /// The point at the nearest corner of the triangle in front; where points carry the surface, the one that carries most of
+    /// that corner.
+    fn corner(&self, model: &Model, seen: &Seen, cursor: Vec2) -> Option<usize> {
         let (triangle, _) = self.at_cursor?;
-        let away = |point: &u32| (seen.pixels[*point as usize] - cursor).length();
-        triangle.iter().min_by(|a, b| away(a).total_cmp(&away(b))).map(|&point| point as usize)
+        let away = |corner: &u32| (seen.corner(*corner).0 - cursor).length();
+        let corner = triangle.into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))? as usize;
+        let Some(carried) = corner.checked_sub(model.point_count()) else { return Some(corner) };
+        let mut vertices = model.surfaces().iter().flat_map(sprung::Surface::weighted);
+        let vertex = vertices.nth(carried)?;
+        let heaviest = (0..4).max_by(|&a, &b| vertex.weights[a].total_cmp(&vertex.weights[b]))?;
+        Some(vertex.points[heaviest] as usize)
     }
 }
 

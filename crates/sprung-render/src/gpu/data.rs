@@ -160,7 +160,7 @@ impl Data {
         let mut grown = self.rims.make_room(device, found.rims.len());
         grown |= self.fans.make_room(device, found.fans.len());
         grown |= self.spokes.make_room(device, found.spokes.len());
-        grown |= self.positions.make_room(device, model.point_count());
+        grown |= self.positions.make_room(device, found.rims.len());
         grown |= self.springs.make_room(device, model.spring_count());
         if grown {
             self.groups = None;

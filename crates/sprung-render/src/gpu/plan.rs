@@ -133,8 +133,11 @@ impl Plan {
         let (parts, corners) = chosen_surfaces(model, appearance, &shown, coarse);
         let wireframe = appearance.surfaces == Surfaces::Wireframe;
         let edges: Vec<[u32; 3]> = if wireframe {
-            let surfaces = model.surfaces().iter();
-            surfaces.flat_map(|surface| edges(&surface.triangles)).map(|[a, b]| [a, b, 0]).collect()
+            let surfaces = 0..model.surfaces().len();
+            surfaces
+                .flat_map(|surface| edges(&model.triangles_in_list(surface)))
+                .map(|[a, b]| [a, b, 0])
+                .collect()
         } else {
             Vec::new()
         };
@@ -163,7 +166,8 @@ fn is_crowded(body: &Body) -> bool {
 pub fn shown(model: &Model, appearance: &Appearance, body: usize) -> Shown {
     let has_surface = appearance.surfaces != Surfaces::Hidden
         && model.surfaces().iter().any(|surface| surface.body == body);
-    let in_detail = !(has_surface && model.bodies().get(body).is_some_and(is_crowded));
+    let is_covered = model.bodies().get(body).is_some_and(is_crowded) || model.has_carried_skin(body);
+    let in_detail = !(has_surface && is_covered);
     let points = match appearance.points {
         Points::Auto => in_detail,
         Points::Spheres => true,
@@ -231,7 +235,10 @@ fn chosen_surfaces(
             // Springs and edges would not lie on a coarser one.
             let is_bare = !shown.springs && appearance.surfaces != Surfaces::Wireframe;
             let fewer = coarse.get(index).and_then(Option::as_ref).filter(|_| is_bare);
-            corners.extend(fewer.unwrap_or(&surface.triangles).iter().flatten());
+            match fewer {
+                Some(fewer) => corners.extend(fewer.iter().flatten()),
+                None => corners.extend(model.triangles_in_list(index).iter().flatten()),
+            }
             let is_pale = shown.springs && surface.kind == SurfaceKind::Cloth;
             parts.push(Part { corners: first..corners.len() as u32, kind: surface.kind, is_pale });
         }

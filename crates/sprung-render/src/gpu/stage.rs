@@ -218,16 +218,21 @@ impl Stage {
             return None;
         }
         if self.openness.is_none() && self.quality.is_coarse() {
-            let surfaces = model.surfaces().iter();
-            self.coarse = surfaces.map(|surface| coarser(&surface.triangles, moment.now)).collect();
+            let all = model.with_weighted(moment.now);
+            let surfaces = 0..model.surfaces().len();
+            self.coarse = surfaces.map(|surface| coarser(&model.triangles_in_list(surface), &all)).collect();
         }
         let openness = self.openness.get_or_insert_with(|| surroundings::openness(model, moment.now));
-        let mut bounds = self.data.set_positions(&self.queue, moment, openness);
+        // The vertices that points carry come after these.
+        let (now, before) = (model.with_weighted(moment.now), model.with_weighted(moment.before));
+        let carried = Moment { now: &now, before: &before, ..*moment };
+        let mut bounds = self.data.set_positions(&self.queue, &carried, openness);
         if self.first == Bounds::default() {
             self.first = bounds;
         }
         if moment.ghost.len() == points {
-            self.data.set_ghost(&self.device, &self.queue, moment.ghost, &mut bounds);
+            let ghost = model.with_weighted(moment.ghost);
+            self.data.set_ghost(&self.device, &self.queue, &ghost, &mut bounds);
         }
         if appearance.velocity_arrows > 0.0 && moment.velocities.len() == points {
             self.data.set_velocities(&self.device, &self.queue, moment.velocities);

@@ -17,8 +17,11 @@ impl Rims {
     /// Works out what lies around the points of surfaces. Lists longer than `most` are left empty: then normals or
     /// colours of surfaces are plain.
     pub fn new(model: &Model, most: usize) -> Self {
-        let mut rims = vec![[0u32; 4]; model.point_count()];
-        let triangles = || model.surfaces().iter().flat_map(|surface| &surface.triangles);
+        // Points, and after them the vertices that they carry, which end no springs.
+        let mut rims = vec![[0u32; 4]; model.point_count() + model.weighted_count()];
+        let surfaces: Vec<_> =
+            (0..model.surfaces().len()).map(|surface| model.triangles_in_list(surface)).collect();
+        let triangles = || surfaces.iter().flat_map(|triangles| triangles.iter());
         for &corner in triangles().flatten() {
             rims[corner as usize][1] += 1;
         }

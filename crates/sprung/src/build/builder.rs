@@ -9,7 +9,7 @@ use super::connect::{pairs_between, pairs_within};
 use super::numbering::hidden_order;
 use crate::error::{Code, Error, Result};
 use crate::math::{distance, without_negligible};
-use crate::model::{Body, HiddenOrder, Joint, Model, Surface, SurfaceKind};
+use crate::model::{Body, HiddenOrder, Joint, Model, Surface, SurfaceKind, SurfaceVertices, WeightedVertex};
 use crate::params::{
     DAMPING_RANGE, DT_RANGE, LENGTH_RANGE, Params, STIFFNESS_RANGE, check_in, check_mass, check_vector,
 };
@@ -258,7 +258,43 @@ impl ModelBuilder {
     pub fn add_surface(&mut self, kind: SurfaceKind, triangles: Vec<[u32; 3]>) -> Result<()> {
         triangles.iter().flatten().try_for_each(|&point| self.check_point(point as usize))?;
         self.ensure_body()?;
-        self.surfaces.push(Surface { body: self.bodies.len() - 1, kind, triangles });
+        let body = self.bodies.len() - 1;
+        self.surfaces.push(Surface { body, kind, vertices: SurfaceVertices::Points, triangles });
+        Ok(())
+    }
+
+    /// Gives the current body a surface whose vertices are carried along by its points; the triangles are indices into
+    /// `vertices`.
+    ///
+    /// # Errors
+    /// [`Code::NotFound`] for a point or vertex that is not there, [`Code::OutOfRange`] for weights that do not add up
+    /// to 1, [`Code::TooLarge`] for more vertices than 32 bits can count.
+    pub fn add_weighted_surface(
+        &mut self,
+        kind: SurfaceKind,
+        vertices: Vec<WeightedVertex>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<()> {
+        vertices.iter().flat_map(|vertex| vertex.points).try_for_each(|p| self.check_point(p as usize))?;
+        for (index, vertex) in vertices.iter().enumerate() {
+            let sum: f32 = vertex.weights.iter().sum();
+            // Not a number is not near 1 either.
+            if (sum - 1.0).abs() > 1e-4 || sum.is_nan() {
+                let sentence = format!("vertex {index} has weights that add up to {sum}, and must to 1");
+                return Err(Error::new(Code::OutOfRange, sentence));
+            }
+        }
+        if let Some(corner) = triangles.iter().flatten().find(|&&corner| corner as usize >= vertices.len()) {
+            let sentence = format!("there is no vertex {corner}; the surface has {}", vertices.len());
+            return Err(Error::new(Code::NotFound, sentence));
+        }
+        let others: usize = self.surfaces.iter().map(|surface| surface.weighted().len()).sum();
+        if self.position.len() + others + vertices.len() >= u32::MAX as usize {
+            return Err(Error::new(Code::TooLarge, "points and vertices are more than 4,294,967,295"));
+        }
+        self.ensure_body()?;
+        let body = self.bodies.len() - 1;
+        self.surfaces.push(Surface { body, kind, vertices: SurfaceVertices::Weighted(vertices), triangles });
         Ok(())
     }
 

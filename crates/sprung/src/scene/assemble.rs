@@ -5,10 +5,11 @@ use std::ops::Range;
 use glam::{DMat3, DVec3, Vec3};
 
 use super::check::{MAX_POINTS, check};
-use super::choices::{Dt, Numbers, OneOrEach, Pin};
+use super::choices::{Dt, Numbers, OneOrEach, Pin, PinWhere};
 use super::group::Group;
+use super::suggest::shortened;
 use super::types::{Body, Exception, Joint, Plane, Scene, Springs};
-use crate::build::{Material, ModelBuilder};
+use crate::build::{Material, Mesh, ModelBuilder};
 use crate::contact;
 use crate::contact::UNIT_TOLERANCE;
 use crate::error::{Code, Error, Result};
@@ -18,6 +19,9 @@ use crate::params::{MAGNITUDE_RANGE, Params};
 use crate::simulation::Simulation;
 use crate::stability;
 use crate::state::State;
+
+/// How far each of red, green and blue may be from what a pin asks for: colours in files have 8 bits, and painted ones vary.
+const SAME_COLOUR: f64 = 0.05;
 
 impl Scene {
     /// Builds model, params and first state.
@@ -35,17 +39,23 @@ impl Scene {
     /// # Errors
     /// As [`build`](Self::build).
     pub fn build_within(&self, max_points: u64, max_springs: u64) -> Result<(Model, Params, State)> {
-        check(self, max_points.min(MAX_POINTS))
-            .and_then(|()| Assembly::new(self, max_springs.min(self.spring_limit())).build())
+        self.built(max_points.min(MAX_POINTS), max_springs.min(self.spring_limit()))
             .map(|built| (built.model, built.params, built.state))
-            .map_err(|error| self.origin.locate(error))
     }
 
     /// As [`build`](Self::build), and knows which springs each group made.
     pub(super) fn build_in_groups(&self) -> Result<Built> {
-        check(self, MAX_POINTS)
-            .and_then(|()| Assembly::new(self, self.spring_limit()).build())
-            .map_err(|error| self.origin.locate(error))
+        self.built(MAX_POINTS, self.spring_limit())
+    }
+
+    fn built(&self, max_points: u64, max_springs: u64) -> Result<Built> {
+        let build = || {
+            let remade = self.up_to_date()?;
+            let scene = remade.as_ref().unwrap_or(self);
+            check(scene, max_points)?;
+            Assembly::new(scene, max_springs).build()
+        };
+        build().map_err(|error| self.origin.locate(error))
     }
 
     /// Builds the scene and bundles it, ready to step.
@@ -119,6 +129,13 @@ impl<'a> Assembly<'a> {
     fn refuse_too_many_springs(&self) -> Result<()> {
         let mut sum = 0u64;
         for (index, body) in self.scene.bodies.iter().enumerate() {
+            sum = sum.saturating_add(body.made().map_or(0, |made| made.springs.len() as u64));
+            if sum > self.max_springs {
+                return Err(too_many_springs(
+                    self.max_springs,
+                    format!("body[{index}].{}", body.material_key()),
+                ));
+            }
             for (group, springs) in body.springs.iter().enumerate() {
                 sum = sum.saturating_add(body.fewest_springs(springs, self.max_springs));
                 if sum > self.max_springs {
@@ -135,18 +152,21 @@ impl<'a> Assembly<'a> {
 
     fn add_body(&mut self, path: &str, body: &'a Body) -> Result<()> {
         let at = |error: Error| replaced(error, path);
+        if let (true, Some(mesh)) = (body.waits_for_mesh(), &body.mesh) {
+            let sentence = format!("is \"{}\", which has not been read", shortened(&mesh.file));
+            let error = Error::new(Code::Unreadable, sentence).at_field(format!("{path}.mesh"));
+            return Err(error.with_fix("open the scene's file, so that its folder is known"));
+        }
         self.builder.begin_body(&body.name).map_err(at)?;
         let first = self.builder.point_count();
         let placement = Placement::new(body);
-        let masses = match body.body_mass {
-            Some(total) => OneOrEach::One(total / body.point_count() as f64),
-            None => body.point_mass.clone().unwrap_or(OneOrEach::One(1.0)),
-        };
+        let masses = masses(body);
         let shape = body.shape();
         let from_lattice =
             shape.iter().flat_map(|lattice| lattice.positions()).map(|p| body.shape_origin() + p);
         let explicit = body.points.iter().flatten().map(|&point| DVec3::from_array(point));
-        for (index, local) in from_lattice.chain(explicit).enumerate() {
+        let from_mesh = body.made().into_iter().flat_map(|made| made.points.iter().copied());
+        for (index, local) in from_lattice.chain(explicit).chain(from_mesh).enumerate() {
             let position = placement.world(local);
             if !position.to_array().iter().all(|coordinate| MAGNITUDE_RANGE.contains(coordinate)) {
                 let sentence =
@@ -160,6 +180,7 @@ impl<'a> Assembly<'a> {
         for (index, pin) in body.pins.iter().enumerate() {
             self.pin(&format!("{path}.pins[{index}]"), body, &points, pin)?;
         }
+        self.add_mesh(path, body, &points)?;
         for (index, springs) in body.springs.iter().enumerate() {
             self.add_springs(&format!("{path}.springs[{index}]"), body, &points, springs)?;
         }
@@ -169,6 +190,39 @@ impl<'a> Assembly<'a> {
         }
         self.bodies.push(points);
         Ok(())
+    }
+
+    /// Springs and surface of a body made from a mesh.
+    fn add_mesh(&mut self, path: &str, body: &'a Body, points: &Range<usize>) -> Result<()> {
+        let (Some(made), Some((rest_scale, cut, except))) = (body.made(), body.mesh_springs()) else {
+            return Ok(());
+        };
+        let key = format!("{path}.{}", body.material_key());
+        let first = self.builder.spring_count();
+        self.builder.reserve(0, made.springs.len());
+        for spring in &made.springs {
+            let [i, j] = spring.ends.map(|end| points.start + end as usize);
+            let material = material(spring.stiffness, spring.damping);
+            self.builder.add_spring(i, j, material).map_err(|error| self.explained(error, key.clone()))?;
+        }
+        self.end_group(first, rest_scale, cut, except, &key);
+
+        let Some(surface) = &made.surface else { return Ok(()) };
+        let mut triangles = surface.triangles.clone();
+        match &surface.vertices {
+            Some(vertices) => {
+                let mut vertices = vertices.clone();
+                vertices.iter_mut().for_each(|vertex| {
+                    vertex.points = vertex.points.map(|point| points.start as u32 + point);
+                });
+                self.builder.add_weighted_surface(surface.kind, vertices, triangles)
+            }
+            None => {
+                triangles.iter_mut().flatten().for_each(|corner| *corner += points.start as u32);
+                self.builder.add_surface(surface.kind, triangles)
+            }
+        }
+        .map_err(|error| replaced(error, &format!("{path}.mesh")))
     }
 
     fn pin(&mut self, path: &str, body: &Body, points: &Range<usize>, pin: &Pin) -> Result<()> {
@@ -301,11 +355,55 @@ pub(super) fn pinned_by(
             let side = shape.as_ref().and_then(|lattice| Some(lattice.side_points(lattice.side(name)?)));
             side.into_iter().flatten().map(|index| points.start + index as usize).collect()
         }
-        Pin::Box(pin) => {
-            let (min, max) = (vec3(pin.region.min), vec3(pin.region.max));
+        Pin::Where(PinWhere { region: Some(region), .. }) => {
+            let (min, max) = (vec3(region.min), vec3(region.max));
             let inside =
                 |&point: &usize| position(point).cmpge(min).all() && position(point).cmple(max).all();
             points.clone().filter(inside).collect()
+        }
+        Pin::Where(PinWhere { nearest: Some(place), .. }) => {
+            let distance =
+                |&point: &usize| position(point).as_dvec3().distance_squared(DVec3::from_array(*place));
+            points.clone().min_by(|a, b| distance(a).total_cmp(&distance(b))).into_iter().collect()
+        }
+        Pin::Where(pin) => {
+            let vertices = body.read_mesh().map(|mesh| pinned_vertices(pin, mesh)).unwrap_or_default();
+            let points_at = body.made().map_or(&[][..], |made| &made.point_of_vertex);
+            let mut chosen: Vec<usize> =
+                vertices.into_iter().map(|vertex| points.start + points_at[vertex] as usize).collect();
+            chosen.sort_unstable();
+            chosen.dedup();
+            chosen
+        }
+    }
+}
+
+/// The vertices of a mesh that a pin names by group or colour.
+pub(super) fn pinned_vertices(pin: &PinWhere, mesh: &Mesh) -> Vec<usize> {
+    if let Some(name) = &pin.group {
+        let groups = mesh.groups.iter().filter(|group| group.name == *name);
+        return groups.flat_map(|group| group.vertices.iter().map(|&vertex| vertex as usize)).collect();
+    }
+    let Some(colour) = pin.colour else { return Vec::new() };
+    let near = |found: &[f32; 3]| {
+        found.iter().zip(colour).all(|(&found, wanted)| (f64::from(found) - wanted).abs() <= SAME_COLOUR)
+    };
+    mesh.colours.iter().enumerate().filter(|(_, found)| near(found)).map(|(vertex, _)| vertex).collect()
+}
+
+/// The mass of each point of a body, kg.
+fn masses(body: &Body) -> OneOrEach<f64> {
+    if let Some(masses) = &body.point_mass {
+        return masses.clone();
+    }
+    let of_mesh = body.made().map(|made| &made.masses).filter(|masses| !masses.is_empty());
+    match (body.body_mass, of_mesh) {
+        (None, None) => OneOrEach::One(1.0),
+        (None, Some(masses)) => OneOrEach::Each(masses.clone()),
+        (Some(total), None) => OneOrEach::One(total / body.point_count() as f64),
+        (Some(total), Some(masses)) => {
+            let sum: f64 = masses.iter().sum();
+            OneOrEach::Each(masses.iter().map(|mass| mass / sum * total).collect())
         }
     }
 }
@@ -340,7 +438,9 @@ impl Placement {
             rotation(axis / axis.abs().max_element(), turn.degrees)
         };
         let rotation = body.rotation.as_ref().map(turned);
-        Self { scale: body.scale, rotation, position: DVec3::from_array(body.position) }
+        // A mesh is scaled before anything is made of it: its springs depend on its size.
+        let scale = if body.mesh.is_some() { 1.0 } else { body.scale };
+        Self { scale, rotation, position: DVec3::from_array(body.position) }
     }
 
     fn world(&self, local: DVec3) -> Vec3 {

@@ -5,7 +5,8 @@
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
 
-use super::choices::{Dt, OneOrEach, Pin};
+use super::assemble::pinned_vertices;
+use super::choices::{Dt, OneOrEach, Pin, PinWhere};
 use super::group::check_exceptions;
 use super::suggest::{did_you_mean, shortened, steers};
 use super::types::{Body, Joint, Plane, Scene, Springs};
@@ -24,6 +25,15 @@ const NAME_LENGTH: usize = 100;
 /// Allowed spacings (m) and scales: so small that they are never in the way, and large enough that no division by
 /// them overflows.
 const SIZE_RANGE: RangeInclusive<f32> = 1e-9..=1e9;
+
+/// Allowed densities, kg/m² or kg/m³.
+const DENSITY_RANGE: RangeInclusive<f32> = 1e-9..=1e9;
+
+/// Allowed damping times, s.
+const TIME_RANGE: RangeInclusive<f32> = 0.0..=1e6;
+
+/// Bytes that the path of a mesh file may have.
+const PATH_LENGTH: usize = 1000;
 
 /// Checks a whole scene.
 pub(super) fn check(scene: &Scene, max_points: u64) -> Result<()> {
@@ -141,8 +151,10 @@ fn check_shape(path: &str, body: &Body) -> Result<()> {
         ("grid", body.grid.is_some()),
         ("lattice", body.lattice.is_some()),
         ("points", body.points.is_some()),
+        ("mesh", body.mesh.is_some()),
     ];
     exactly_one(path, "has no shape", &shapes)?;
+    check_mesh(path, body)?;
     if let Some(chain) = &body.chain {
         count(&format!("{path}.chain.points"), chain.points)?;
         vector(&format!("{path}.chain.step"), chain.step, "m")?;
@@ -170,6 +182,63 @@ fn check_shape(path: &str, body: &Body) -> Result<()> {
     Ok(())
 }
 
+/// What a mesh becomes, and of what.
+fn check_mesh(path: &str, body: &Body) -> Result<()> {
+    let kinds = [("cloth", body.cloth.is_some()), ("soft", body.soft.is_some()), ("net", body.net.is_some())];
+    let Some(mesh) = &body.mesh else {
+        let Some((kind, _)) = kinds.iter().find(|(_, there)| *there) else { return Ok(()) };
+        let error = Error::new(Code::Conflict, "is made from a mesh, and this body has none");
+        return Err(error.with_fix("say mesh = \"FILE\"").at_field(format!("{path}.{kind}")));
+    };
+    let length = mesh.file.len();
+    if length == 0 || length > PATH_LENGTH || mesh.file.chars().any(steers) {
+        let sentence = format!("must be a file's name of 1 to {PATH_LENGTH} visible characters");
+        return Err(Error::new(Code::OutOfRange, sentence).at_field(format!("{path}.mesh")));
+    }
+    let optional = |field: String, value: Option<f64>, range, unit| {
+        value.map_or(Ok(()), |value| number(field, value, range, unit))
+    };
+    optional(format!("{path}.mesh.merge"), mesh.merge, &LENGTH_RANGE, "m")?;
+    exactly_one(path, "does not say what its mesh becomes", &kinds)?;
+    let at = |key: &str| format!("{path}.{}.{key}", body.material_key());
+    if let Some(cloth) = &body.cloth {
+        density(&at("density"), cloth.density, "kg/m²", body)?;
+        number(at("stiffness"), cloth.stiffness, &STIFFNESS_RANGE, "N/m")?;
+        number(at("bending"), cloth.bending, &STIFFNESS_RANGE, "N·m")?;
+        optional(at("bending_radius"), cloth.bending_radius, &SIZE_RANGE, "m")?;
+        number(at("damping"), cloth.damping, &TIME_RANGE, "s")?;
+    }
+    if let Some(soft) = &body.soft {
+        number(at("spacing"), soft.spacing, &SIZE_RANGE, "m")?;
+        density(&at("density"), soft.density, "kg/m³", body)?;
+        number(at("stiffness"), soft.stiffness, &STIFFNESS_RANGE, "Pa")?;
+        number(at("damping"), soft.damping, &TIME_RANGE, "s")?;
+    }
+    if let Some(net) = &body.net {
+        number(at("stiffness"), net.stiffness, &STIFFNESS_RANGE, "N/m")?;
+        number(at("damping"), net.damping, &DAMPING_RANGE, "N·s/m")?;
+    }
+    let Some((rest_scale, cut, except)) = body.mesh_springs() else { return Ok(()) };
+    number(at("rest_scale"), rest_scale, &LENGTH_RANGE, "")?;
+    check_exceptions(&format!("{path}.{}", body.material_key()), cut, except)
+}
+
+/// The mass of a material: its density, or the body's mass. Masses for each point may be said besides, and then count.
+fn density(field: &str, value: Option<f64>, unit: &str, body: &Body) -> Result<()> {
+    match (value, body.body_mass) {
+        (Some(_), Some(_)) => {
+            let sentence = "is said besides the body's body_mass; one of them is enough";
+            Err(Error::new(Code::Conflict, sentence).at_field(field))
+        }
+        (Some(value), None) => number(field.to_owned(), value, &DENSITY_RANGE, unit),
+        (None, None) if body.point_mass.is_none() => {
+            let sentence = "is missing; say how heavy the material is, or the body's body_mass";
+            Err(Error::new(Code::MissingField, sentence).at_field(field))
+        }
+        (None, _) => Ok(()),
+    }
+}
+
 fn check_placement(path: &str, body: &Body) -> Result<()> {
     number(format!("{path}.scale"), body.scale, &SIZE_RANGE, "")?;
     if let Some(rotation) = &body.rotation {
@@ -187,7 +256,9 @@ fn check_masses(path: &str, body: &Body) -> Result<()> {
     if let Some(total) = body.body_mass {
         let field = format!("{path}.body_mass");
         mass(&field, total)?;
-        mass(&field, total / body.point_count() as f64)?;
+        if !body.waits_for_mesh() {
+            mass(&field, total / body.point_count() as f64)?;
+        }
     }
     let Some(masses) = &body.point_mass else { return Ok(()) };
     let field = format!("{path}.point_mass");
@@ -225,31 +296,86 @@ fn check_pins(path: &str, body: &Body) -> Result<()> {
             }
             Pin::Side(name) => {
                 let side = shape.as_ref().and_then(|lattice| lattice.side(name));
-                let side = side.ok_or_else(|| unknown_side(name, shape.as_ref()).at_field(&field))?;
+                let side = side.ok_or_else(|| {
+                    unknown_side(name, shape.as_ref(), body.mesh.is_some()).at_field(&field)
+                })?;
                 if sides.contains(&side) {
                     let sentence = format!("pins the side \"{name}\" a second time");
                     return Err(Error::new(Code::Duplicate, sentence).at_field(field));
                 }
                 sides.push(side);
             }
-            Pin::Box(pin) => {
-                let region = &pin.region;
-                vector(&format!("{field}.box.min"), region.min, "m")?;
-                vector(&format!("{field}.box.max"), region.max, "m")?;
-                if let Some(axis) = (0..3).find(|&axis| region.min[axis] > region.max[axis]) {
-                    let (min, max) = (region.min[axis], region.max[axis]);
-                    let sentence = format!("has min {min} above max {max} along {}", ["x", "y", "z"][axis]);
-                    return Err(Error::new(Code::Conflict, sentence).at_field(format!("{field}.box")));
-                }
-            }
+            Pin::Where(place) => check_place(&field, place, body)?,
         }
     }
     Ok(())
 }
 
-fn unknown_side(name: &str, shape: Option<&Lattice>) -> Error {
+/// A pin by box, place, group or colour.
+fn check_place(field: &str, pin: &PinWhere, body: &Body) -> Result<()> {
+    let ways = [
+        ("box", pin.region.is_some()),
+        ("nearest", pin.nearest.is_some()),
+        ("group", pin.group.is_some()),
+        ("colour", pin.colour.is_some()),
+    ];
+    exactly_one(field, "does not say which points to hold", &ways)?;
+    if let Some(region) = &pin.region {
+        vector(&format!("{field}.box.min"), region.min, "m")?;
+        vector(&format!("{field}.box.max"), region.max, "m")?;
+        if let Some(axis) = (0..3).find(|&axis| region.min[axis] > region.max[axis]) {
+            let (min, max) = (region.min[axis], region.max[axis]);
+            let sentence = format!("has min {min} above max {max} along {}", ["x", "y", "z"][axis]);
+            return Err(Error::new(Code::Conflict, sentence).at_field(format!("{field}.box")));
+        }
+    }
+    if let Some(place) = pin.nearest {
+        vector(&format!("{field}.nearest"), place, "m")?;
+    }
+    if let Some(colour) = pin.colour {
+        vector(&format!("{field}.colour"), colour, "")?;
+    }
+    let key = if pin.group.is_some() { "group" } else { "colour" };
+    if (pin.group.is_some() || pin.colour.is_some()) && body.mesh.is_none() {
+        let sentence = format!("is a {key}, and only meshes have those");
+        let error = Error::new(Code::Conflict, sentence).with_fix("pin points by number, or by a box");
+        return Err(error.at_field(format!("{field}.{key}")));
+    }
+    let Some(mesh) = body.read_mesh() else { return Ok(()) };
+    if let Some(name) = &pin.group
+        && pinned_vertices(pin, mesh).is_empty()
+    {
+        let names = || mesh.groups.iter().map(|group| group.name.as_str());
+        let there = match mesh.groups.len() {
+            0 => "no groups".to_owned(),
+            1..=12 => format!("the groups {}", names().map(shortened).collect::<Vec<_>>().join(", ")),
+            count => format!("{count} others"),
+        };
+        let sentence = format!("is \"{}\", and the mesh has {there}", shortened(name));
+        let error = Error::new(Code::NotFound, sentence).at_field(format!("{field}.group"));
+        return Err(match did_you_mean(name, names().take(1000)) {
+            Some(fix) => error.with_fix(fix),
+            None => error,
+        });
+    }
+    if pin.colour.is_some() && pinned_vertices(pin, mesh).is_empty() {
+        let sentence = match mesh.colours.is_empty() {
+            true => "is a colour, and the mesh has none",
+            false => "is the colour of no vertex",
+        };
+        return Err(Error::new(Code::NotFound, sentence).at_field(format!("{field}.colour")));
+    }
+    Ok(())
+}
+
+fn unknown_side(name: &str, shape: Option<&Lattice>, of_mesh: bool) -> Error {
     let short = shortened(name);
     let Some(lattice) = shape else {
+        if of_mesh {
+            let sentence = format!("is \"{short}\", but a mesh has no named sides");
+            let error = Error::new(Code::NotFound, sentence);
+            return error.with_fix(format!("say {{ group = \"{short}\" }}, or a box or a nearest place"));
+        }
         let sentence = format!("is \"{short}\", but a body of explicit points has no named sides");
         return Error::new(Code::NotFound, sentence).with_fix("pin its points by number, or by a box");
     };
@@ -277,8 +403,16 @@ fn check_springs(path: &str, springs: &Springs, body: &Body) -> Result<()> {
     if let Some(kinds) = &springs.kinds {
         let field = format!("{path}.kinds");
         if body.shape().is_none() {
-            let sentence = "cannot be used with explicit points, which have no neighbours";
-            return Err(Error::new(Code::Conflict, sentence).with_fix("use radius or pairs").at_field(field));
+            let (sentence, fix) = match &body.mesh {
+                Some(_) => (
+                    "cannot be used with a mesh",
+                    "say cloth, soft or net, and radius or pairs for more springs",
+                ),
+                None => {
+                    ("cannot be used with explicit points, which have no neighbours", "use radius or pairs")
+                }
+            };
+            return Err(Error::new(Code::Conflict, sentence).with_fix(fix).at_field(field));
         }
         if let Some(index) = (1..kinds.len()).find(|&index| kinds[..index].contains(&kinds[index])) {
             let sentence = "names this kind a second time";
@@ -383,6 +517,8 @@ fn exactly_one(path: &str, none: &str, keys: &[(&str, bool)]) -> Result<()> {
 /// A list must have one entry for each point of the body.
 fn each_point<T>(field: &str, values: &OneOrEach<T>, body: &Body) -> Result<()> {
     match values {
+        // How many points a mesh makes is known when it has been read.
+        _ if body.waits_for_mesh() => Ok(()),
         OneOrEach::Each(list) if list.len() as u64 != body.point_count() => {
             let sentence =
                 format!("has {} entries, and the body has {} points", list.len(), body.point_count());
@@ -394,7 +530,7 @@ fn each_point<T>(field: &str, values: &OneOrEach<T>, body: &Body) -> Result<()> 
 
 fn point_of(field: &str, point: u32, body: &Body) -> Result<()> {
     let count = body.point_count();
-    if u64::from(point) < count {
+    if u64::from(point) < count || body.waits_for_mesh() {
         return Ok(());
     }
     let name = shortened(&body.name);

@@ -293,17 +293,26 @@ pub enum Pin {
     Index(u32),
     /// A side, such as "left" or "left-back"; of a chain "start" or "end".
     Side(String),
-    /// All points of the body within a box.
-    Box(BoxPin),
+    /// Points found by where they are or what they are called.
+    Where(PinWhere),
 }
 
-/// All points of the body within a box.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Points found by one of `box`, `nearest`, `group` and `colour`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BoxPin {
-    /// The box, in the coordinates of the world.
-    #[serde(rename = "box")]
-    pub region: Region,
+pub struct PinWhere {
+    /// All points of the body within a box, in the coordinates of the world.
+    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
+    pub region: Option<Region>,
+    /// The point nearest to this place in the world, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<[f64; 3]>,
+    /// The points at the vertices of this group of the mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
+    /// The points at the vertices of the mesh that have this colour: red, green and blue, 0 to 1, each to within 0.05.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour: Option<[f64; 3]>,
 }
 
 /// A box with its edges along the axes.
@@ -341,6 +350,6 @@ impl<'de> Visitor<'de> for PinVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Pin, A::Error> {
-        BoxPin::deserialize(MapAccessDeserializer::new(table)).map(Pin::Box)
+        PinWhere::deserialize(MapAccessDeserializer::new(table)).map(Pin::Where)
     }
 }

@@ -17,6 +17,7 @@ mod builtin;
 mod check;
 mod choices;
 mod group;
+mod mesh;
 mod read;
 mod set;
 mod shape;
@@ -29,7 +30,8 @@ use toml::de::DeTable;
 
 pub use builtin::{BUILTIN, Builtin, Kind, STARTER};
 pub use check::MAX_POINTS;
-pub use choices::{BoxPin, Dt, Numbers, OneOrEach, Pin, Region};
+pub use choices::{Dt, Numbers, OneOrEach, Pin, PinWhere, Region};
+pub use mesh::{Cloth, MeshFile, Net, Soft};
 pub use suggest::closest;
 pub use types::{
     Block, Body, Chain, Exception, Force, Grid, GridPlane, Joint, Plane, Rotation, Scene, Springs,

@@ -85,6 +85,7 @@ impl Scene {
         let text = toml::to_string(&table).map_err(|error| Error::new(Code::Syntax, error.to_string()))?;
         let document = DeTable::parse(&text).map_err(|error| syntax_error(&error, &text))?;
         let mut scene: Self = read::from_document(&document).map_err(read::ReadError::into_error)?;
+        scene.keep_meshes(self)?;
         check(&scene, MAX_POINTS)?;
         scene.origin = self.origin.with_overrides(&fields, argument);
         Ok(scene)

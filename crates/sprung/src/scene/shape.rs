@@ -36,6 +36,7 @@ impl Body {
             Self { chain: Some(_), .. } => "chain.points",
             Self { grid: Some(_), .. } => "grid.points",
             Self { lattice: Some(_), .. } => "lattice.points",
+            Self { mesh: Some(_), .. } => "mesh",
             _ => "points",
         }
     }
@@ -48,8 +49,11 @@ impl Body {
         chain.or(grid).or(block).map_or(DVec3::ZERO, DVec3::from_array)
     }
 
-    /// How many points the body has; saturates instead of overflowing.
+    /// How many points the body has; saturates instead of overflowing. Of a mesh that has not been read, none.
     pub fn point_count(&self) -> u64 {
+        if let Some(made) = self.made() {
+            return made.points.len() as u64;
+        }
         let explicit = self.points.as_ref().map_or(0, |points| points.len() as u64);
         self.shape().map_or(explicit, |lattice| lattice.point_count())
     }
@@ -100,6 +104,7 @@ impl Scene {
         let limit = self.spring_limit();
         let mut springs = 0u64;
         for body in &self.bodies {
+            springs = springs.saturating_add(body.made().map_or(0, |made| made.springs.len() as u64));
             for group in &body.springs {
                 springs = springs.saturating_add(body.most_springs(group, limit));
             }

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::choices::{Dt, Numbers, OneOrEach, Pin, max_springs, substeps};
+use super::mesh::{Cloth, Loaded, MeshFile, Net, Soft};
 use super::source::Origin;
 use crate::build::SpringKind;
 use crate::contact::ContactLaw;
@@ -75,7 +76,7 @@ pub struct Plane {
     pub law: ContactLaw,
 }
 
-/// A named set of points and the springs among them. Its shape is one of `chain`, `grid`, `lattice` and `points`.
+/// A named set of points and the springs among them. Its shape is one of `chain`, `grid`, `lattice`, `points` and `mesh`.
 ///
 /// The shape is scaled, then rotated about the origin, then moved by `position`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -96,6 +97,18 @@ pub struct Body {
     /// Shape: every point by itself, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<[f64; 3]>>,
+    /// Shape: a mesh file, which becomes one of `cloth`, `soft` and `net`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshFile>,
+    /// The mesh becomes cloth of this material.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cloth: Option<Cloth>,
+    /// The mesh becomes a soft body of this material.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub soft: Option<Soft>,
+    /// The mesh becomes a net of such springs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub net: Option<Net>,
     /// Size, as a multiple of the shape's. Default: 1.
     #[serde(default = "unscaled")]
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -126,6 +139,9 @@ pub struct Body {
     /// Constant forces on single points. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub forces: Vec<Force>,
+    /// The mesh, once it has been read.
+    #[serde(skip)]
+    pub(super) loaded: Loaded,
 }
 
 /// Points in a row: the first at `origin`, each `step` from the one before.

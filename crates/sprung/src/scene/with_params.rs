@@ -14,6 +14,7 @@ use super::choices::{Dt, Numbers, OneOrEach, Pin};
 use super::source::Origin;
 use super::types::{Body, Exception, Force, Plane, Scene};
 use super::{MAX_BYTES, too_many_bytes};
+use crate::build::mesh::MeshSpring;
 use crate::contact;
 use crate::error::{Code, Error, Result};
 use crate::model::Model;
@@ -60,22 +61,37 @@ impl Scene {
         for (body, part) in scene.bodies.iter_mut().zip(model.bodies()) {
             save_body(body, &part.points, &own, &target);
         }
-        let bodies = scene.bodies.iter_mut().flat_map(|body| &mut body.springs).map(|springs| GroupText {
-            stiffness: &mut springs.stiffness,
-            damping: &mut springs.damping,
-            rest_scale: &mut springs.rest_scale,
-            cut: &mut springs.cut,
-            except: &mut springs.except,
-        });
-        let joints = scene.joints.iter_mut().map(|joint| GroupText {
-            stiffness: &mut joint.stiffness,
-            damping: &mut joint.damping,
-            rest_scale: &mut joint.rest_scale,
-            cut: &mut joint.cut,
-            except: &mut joint.except,
-        });
-        for (text, springs) in bodies.chain(joints).zip(&own.groups) {
-            text.save(springs, model, &own.params, &target);
+        // In the order in which the groups were made: of each body first the springs of its mesh.
+        let mut groups = own.groups.iter();
+        let mut save = |text: GroupText<'_>| {
+            if let Some(springs) = groups.next() {
+                text.save(springs, model, &own.params, &target);
+            }
+        };
+        for body in &mut scene.bodies {
+            let loaded = body.loaded.clone();
+            if let (Some(made), Some((rest_scale, cut, except))) = (loaded.made(), body.mesh_springs_mut()) {
+                save(GroupText { material: Said::OfEach(&made.springs), rest_scale, cut, except });
+            }
+            for springs in &mut body.springs {
+                save(GroupText {
+                    material: Said::OfAll {
+                        stiffness: &mut springs.stiffness,
+                        damping: &mut springs.damping,
+                    },
+                    rest_scale: &mut springs.rest_scale,
+                    cut: &mut springs.cut,
+                    except: &mut springs.except,
+                });
+            }
+        }
+        for joint in &mut scene.joints {
+            save(GroupText {
+                material: Said::OfAll { stiffness: &mut joint.stiffness, damping: &mut joint.damping },
+                rest_scale: &mut joint.rest_scale,
+                cut: &mut joint.cut,
+                except: &mut joint.except,
+            });
         }
         // "auto" may now stand for another step.
         let is_auto = scene.dt == Dt::Auto && stability::auto_dt(model, &target) == Ok(target.dt);
@@ -164,10 +180,17 @@ fn save_body(body: &mut Body, points: &Range<usize>, own: &Built, target: &Param
     }
 }
 
+/// What a group of springs is made of, besides its exceptions.
+enum Said<'a> {
+    /// The scene says it, the same for all.
+    OfAll { stiffness: &'a mut f64, damping: &'a mut f64 },
+    /// It follows from a mesh, and is another for each.
+    OfEach(&'a [MeshSpring]),
+}
+
 /// What a scene says of one group of springs, in a body or a joint.
 struct GroupText<'a> {
-    stiffness: &'a mut f64,
-    damping: &'a mut f64,
+    material: Said<'a>,
     rest_scale: &'a mut f64,
     cut: &'a mut Vec<Numbers>,
     except: &'a mut Vec<Exception>,
@@ -190,15 +213,30 @@ impl GroupText<'_> {
         }
         let mut exceptions = Exceptions::default();
         let numbers = || 0u32..;
-        *self.stiffness = most_common(&stiffness, *self.stiffness);
-        for (number, value) in
-            numbers().zip(&stiffness).filter(|(_, value)| **value != *self.stiffness as f32)
-        {
-            exceptions.stiffness.entry(value.to_bits()).or_default().push(number);
+        let (usual_stiffness, usual_damping): (Vec<f32>, Vec<f32>) = match self.material {
+            Said::OfAll { stiffness: written_stiffness, damping: written_damping } => {
+                *written_stiffness = most_common(&stiffness, *written_stiffness);
+                *written_damping = most_common(&damping, *written_damping);
+                let count = springs.len();
+                (vec![*written_stiffness as f32; count], vec![*written_damping as f32; count])
+            }
+            Said::OfEach(made) => {
+                made.iter().map(|spring| (spring.stiffness as f32, spring.damping as f32)).unzip()
+            }
+        };
+        let numbered = |values: &[f32], usual: &[f32]| {
+            let unlike: Vec<(u32, u32)> = numbers()
+                .zip(values.iter().zip(usual))
+                .filter(|(_, (value, usual))| value != usual)
+                .map(|(number, (value, _))| (value.to_bits(), number))
+                .collect();
+            unlike
+        };
+        for (bits, number) in numbered(&stiffness, &usual_stiffness) {
+            exceptions.stiffness.entry(bits).or_default().push(number);
         }
-        *self.damping = most_common(&damping, *self.damping);
-        for (number, value) in numbers().zip(&damping).filter(|(_, value)| **value != *self.damping as f32) {
-            exceptions.damping.entry(value.to_bits()).or_default().push(number);
+        for (bits, number) in numbered(&damping, &usual_damping) {
+            exceptions.damping.entry(bits).or_default().push(number);
         }
         let lengths: Vec<[f32; 2]> = model.spring_rest_length()[springs.clone()]
             .iter()

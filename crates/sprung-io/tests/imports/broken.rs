@@ -1,0 +1,176 @@
+//! Every kind of broken file, and the sentence it gets.
+
+use sprung_io::import::read_mesh;
+
+use crate::formats::companion;
+use crate::samples;
+
+/// (file, what it says, the sentence)
+const BROKEN: &[(&str, &str, &str)] = &[
+    (
+        "a.fbx",
+        "",
+        "a.fbx: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk",
+    ),
+    (
+        "a.object",
+        "",
+        "a.object: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk",
+    ),
+    (
+        "a.obk",
+        "",
+        "a.obk: is not a mesh file that can be read; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk; did you mean .obj?",
+    ),
+    (
+        "mesh",
+        "",
+        "mesh: has no ending that tells its format; meshes are read from .obj, .ply, .stl, .gltf, .glb, .usd, .usda, .usdc, .usdz, .msh, .vtk",
+    ),
+    ("a.obj", "", "a.obj: has no vertices; is it an OBJ file?"),
+    ("a.obj", "v 0 0\n", "a.obj:1:1: ends where z must be"),
+    ("a.obj", "v 0 0 0\nv 0 nan 0\n", "a.obj:2:1: has \"nan\" where y must be"),
+    ("a.obj", "v 0 0 1e999\n", "a.obj:1:1: has \"1e999\" where z must be"),
+    ("a.obj", "v 0 0 0\nf 1 2 3\n", "a.obj:2:1: names vertex 3, and has the vertices 1 to 1"),
+    ("a.obj", "v 0 0 0\nf 1 0 1\n", "a.obj:2:1: names vertex 0, and has the vertices 1 to 1 so far"),
+    ("a.obj", "v 0 0 0\nf 1 -2 1\n", "a.obj:2:1: names vertex -2, and has the vertices 1 to 1 so far"),
+    ("a.obj", "v 0 0 0\nf 1 x 1\n", "a.obj:2:1: has \"x\" where a vertex's number must be"),
+    (
+        "a.obj",
+        "v 0 0 0\nf 1 99999999999 1\n",
+        "a.obj:2:1: names vertex 99999999999, and has the vertices 1 to 1 so far",
+    ),
+    ("a.ply", "plu", "a.ply: does not begin with \"ply\"; is it a PLY file?"),
+    (
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n",
+        "a.ply: says that it has 4000000000 \"vertex\", and has only 6 bytes for them",
+    ),
+    (
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 nan\n",
+        "a.ply:8:1: puts vertex 0 at [0, 0, NaN], and coordinates must be finite numbers",
+    ),
+    (
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+        "a.ply:7:1: has vertices without x, y or z",
+    ),
+    (
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 7\n",
+        "a.ply: names vertex 7, and has the vertices 0 to 0",
+    ),
+    ("a.ply", "ply\nelement vertex 1\nend_header\n", "a.ply:4:1: says no format"),
+    (
+        "a.stl",
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0\n",
+        "a.stl:6:1: ends where z must be",
+    ),
+    ("a.stl", "solid a\nfacet\nouter loop\nvertex 0 0 0\nendloop\n", "a.stl:5:1: has a face with 1 corners"),
+    (
+        "a.stl",
+        "not one",
+        "a.stl: is neither an STL text, which begins with \"solid\", nor long enough for a binary STL",
+    ),
+    ("a.gltf", "{", "a.gltf:1:1: is not valid glTF: EOF while parsing an object"),
+    ("a.gltf", "{\"scene\": 3}", "a.gltf: scene: is a scene that is not there"),
+    (
+        "a.gltf",
+        "{\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"children\": [0]}]}",
+        "a.gltf: nodes[0]: lies within itself, or too deeply within others",
+    ),
+    (
+        "a.gltf",
+        "{\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 1}]}",
+        "a.gltf: meshes[1]: is named, and there are 0 meshes",
+    ),
+    (
+        "a.gltf",
+        "{\"buffers\": [{\"uri\": \"gone.bin\", \"byteLength\": 3}]}",
+        "gone.bin: there is no such file",
+    ),
+    (
+        "a.gltf",
+        "{\"buffers\": [{\"uri\": \"data:;base64,AAA=\", \"byteLength\": 3}]}",
+        "a.gltf: buffers[0]: says 3 bytes, and has 2",
+    ),
+    (
+        "a.gltf",
+        "{\"extensionsRequired\": [\"KHR_draco_mesh_compression\"]}",
+        "a.gltf: needs the extension \"KHR_draco_mesh_compression\", which is not read; export it without compression",
+    ),
+    (
+        "a.gltf",
+        "{\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}]}",
+        "a.gltf: accessors[0]: has no bufferView and more than a million entries",
+    ),
+    ("a.usda", "#usda 1.0\n", "a.usda: has no prim of the type Mesh with points"),
+    (
+        "a.usda",
+        "#usda 1.0\ndef Mesh \"m\" {\npoints = [1, 2]\nfaceVertexCounts = [3]\nfaceVertexIndices = [0, 1, 2]\n}\n",
+        "a.usda: has no prim of the type Mesh with points",
+    ),
+    (
+        "a.msh",
+        "$MeshFormat\n1.0 0 8\n",
+        "a.msh:2:1: is of version 1, and versions 2.2 and 4.1 are read; save it anew with Mesh.MshFileVersion = 4.1",
+    ),
+    (
+        "a.msh",
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4000000000\n1 0 0 0\n",
+        "a.msh: says that it has 4000000000 nodes, and has only 9 bytes for them",
+    ),
+    (
+        "a.msh",
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 2 0 1 1 5\n",
+        "a.msh: names node 5, which is not there",
+    ),
+    (
+        "a.msh",
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Stuff\n",
+        "a.msh:4:1: has no end of the section \"$Stuff\"",
+    ),
+    ("a.vtk", "# vtk\n", "a.vtk: does not begin with \"# vtk DataFile Version\"; is it a VTK legacy file?"),
+    (
+        "a.vtk",
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_GRID\n",
+        "a.vtk:4:1: is a STRUCTURED_GRID, and POLYDATA and UNSTRUCTURED_GRID are read",
+    ),
+    (
+        "a.vtk",
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2000000000 float\n0 0 0\n",
+        "a.vtk:5:1: says that it has 6000000000 numbers, and has only 7 bytes for them",
+    ),
+    (
+        "a.vtk",
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nPOLYGONS 1 4\n3 0 0 1\n",
+        "a.vtk: names vertex 1, and has the vertices 0 to 0",
+    ),
+];
+
+#[test]
+fn every_broken_file_gets_its_sentence() {
+    for (file, text, sentence) in BROKEN {
+        let error = read_mesh(text.as_bytes(), file, &mut companion).expect_err(text);
+        assert_eq!(error.to_string(), *sentence, "{file}:\n{text}");
+    }
+}
+
+/// Cut anywhere, a binary file is noticed, and nothing worse happens; a text may be whole without its last line.
+#[test]
+fn files_that_are_cut_are_noticed() {
+    for (name, bytes) in samples::all() {
+        let whole = read_mesh(&bytes, name, &mut companion).unwrap();
+        for length in 0..bytes.len() {
+            let cut = read_mesh(&bytes[..length], name, &mut companion);
+            let is_binary = ["STL", "glb", "little.ply", "big.ply"].iter().any(|part| name.contains(part));
+            if is_binary && let Ok(mesh) = cut {
+                panic!(
+                    "{name} cut to {length} of {} bytes reads as {mesh:?} instead of {whole:?}",
+                    bytes.len()
+                );
+            }
+        }
+    }
+}

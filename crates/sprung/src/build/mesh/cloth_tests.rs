@@ -1,0 +1,225 @@
+//! Patch tests: uniformly strained, springs hold the energy of the material that they are made from.
+
+use super::*;
+
+const MATERIAL: ClothMaterial = ClothMaterial {
+    density: 0.3,
+    stiffness: 40.0,
+    bending: 0.0,
+    bending_radius: None,
+    damping: 0.01,
+    merge: None,
+};
+
+/// Pseudo-random numbers from 0 to 1 (xorshift, Marsaglia 2003).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A unit square of irregular triangles: a grid with its inner points moved about and diagonals drawn at random.
+fn irregular(side: u32, seed: u64) -> Mesh {
+    let mut random = Random(seed);
+    let mut mesh = Mesh::default();
+    for i in 0..=side {
+        for j in 0..=side {
+            let mut moved = |k: u32| if k == 0 || k == side { 0.0 } else { 0.5 * (random.next() - 0.5) };
+            let (x, z) = (f64::from(i) + moved(i), f64::from(j) + moved(j));
+            mesh.positions.push(DVec3::new(x, 0.0, z) / f64::from(side));
+        }
+    }
+    for i in 0..side {
+        for j in 0..side {
+            let at = |a: u32, b: u32| (i + a) * (side + 1) + j + b;
+            let [a, b, c, d] = [at(0, 0), at(0, 1), at(1, 1), at(1, 0)];
+            let halves = if random.next() < 0.5 { [[a, b, c], [a, c, d]] } else { [[b, c, d], [b, d, a]] };
+            halves.iter().for_each(|half| mesh.faces.push(half));
+        }
+    }
+    mesh
+}
+
+/// A strain in the plane of the sheet: along x, along z, and half the shear angle.
+type Strain = [f64; 3];
+
+fn along(strain: Strain, n: DVec3) -> f64 {
+    strain[0] * n.x * n.x + strain[1] * n.z * n.z + 2.0 * strain[2] * n.x * n.z
+}
+
+/// Second-order energy of all springs under a small uniform strain: ½·k·(ℓ·nᵀεn)².
+fn energy(body: &MeshBody, strain: Strain) -> f64 {
+    let of = |spring: &super::super::MeshSpring| {
+        let [a, b] = spring.ends.map(|point| body.points[point as usize]);
+        let (length, n) = ((b - a).length(), (b - a).normalize());
+        let stretch = length * along(strain, n);
+        0.5 * spring.stiffness * stretch * stretch
+    };
+    body.springs.iter().map(of).sum()
+}
+
+/// The isotropic membrane with Poisson's ratio 1/3: ½(λ·tr(ε)² + 2μ·tr(ε²)) with λ = μ = 3/8·E·h, for a unit square.
+fn material_energy([xx, zz, xz]: Strain) -> f64 {
+    let (trace, squared) = (xx + zz, xx * xx + zz * zz + 2.0 * xz * xz);
+    0.5 * 0.375 * MATERIAL.stiffness * (trace * trace + 2.0 * squared)
+}
+
+#[test]
+fn irregular_triangles_hold_the_energy_of_the_material() {
+    let strains: [Strain; 4] = [[1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for (side, seed) in [(6, 1), (12, 2), (24, 3)] {
+        let body = cloth(&irregular(side, seed), &MATERIAL).expect("sound");
+        for strain in strains {
+            let ratio = energy(&body, strain) / material_energy(strain);
+            // Uniform stretching is exact in triangles of any shape. Another strain is so in the pairs that make a quad; in those
+            // left over the sides point where they happen to: Σ(nᵀεn)² lies between 0.6 and 1.8 of its mean for right-angled
+            // triangles, and their sum over the sheet nearer.
+            let bound = if strain[0] == strain[1] && strain[2] == 0.0 { 1e-12 } else { 0.1 };
+            assert!((ratio - 1.0).abs() <= bound, "{side} {strain:?}: {ratio}");
+        }
+    }
+}
+
+/// Quads that are no squares: the isotropic membrane, whatever the strain.
+#[test]
+fn irregular_quads_are_isotropic() {
+    let side = 7;
+    let mut random = Random(11);
+    let mut mesh = Mesh::default();
+    for i in 0..=side {
+        for j in 0..=side {
+            let mut moved = |k: u32| if k == 0 || k == side { 0.0 } else { 0.2 * (random.next() - 0.5) };
+            let (x, z) = (f64::from(i) + moved(i), f64::from(j) + moved(j));
+            mesh.positions.push(DVec3::new(x, 0.0, z) / f64::from(side));
+        }
+    }
+    for i in 0..side {
+        for j in 0..side {
+            let at = |a: u32, b: u32| (i + a) * (side + 1) + j + b;
+            mesh.faces.push(&[at(0, 0), at(0, 1), at(1, 1), at(1, 0)]);
+        }
+    }
+    let body = cloth(&mesh, &MATERIAL).expect("sound");
+    for strain in [[1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.8, 0.4]] {
+        let ratio = energy(&body, strain) / material_energy(strain);
+        // Uniform stretching is exact. In a patch that is nearly a square the equation of sin4θ nearly says nothing, and to meet
+        // it would take springs that push: there it is met in part. What is missing is of the second order in how far corners
+        // are from those of a square, a tenth of a side here, for a single patch.
+        let bound = if strain == [1.0, 1.0, 0.0] { 1e-12 } else { 0.01 };
+        assert!((ratio - 1.0).abs() < bound, "{strain:?}: {ratio}");
+    }
+}
+
+/// A sheet of equilateral triangles is the isotropic membrane, but for its border.
+#[test]
+fn equilateral_triangles_are_isotropic() {
+    let mut mesh = Mesh::default();
+    let height = 0.75f64.sqrt();
+    mesh.positions = (0..6)
+        .map(|k| {
+            let angle = f64::from(k) * std::f64::consts::FRAC_PI_3;
+            DVec3::new(angle.cos(), 0.0, angle.sin())
+        })
+        .chain([DVec3::ZERO])
+        .collect();
+    (0..6).for_each(|k| mesh.faces.push(&[k, (k + 1) % 6, 6]));
+    let body = cloth(&mesh, &MATERIAL).expect("sound");
+    let area = 3.0 * height;
+    for strain in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.3, -0.2, 0.7]] {
+        let ratio = energy(&body, strain) / (area * material_energy(strain));
+        assert!((ratio - 1.0).abs() < 1e-12, "{strain:?}: {ratio}");
+    }
+    let mass: f64 = body.masses.iter().sum();
+    assert!((mass - 0.3 * area).abs() < 1e-12);
+}
+
+/// A square's sides have 3/8 of its stiffness and its diagonals, √2 long, as much; and so has a pair of triangles.
+#[test]
+fn squares_favour_no_direction() {
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 0.0, 1.0), DVec3::Z];
+    let mut quad = Mesh { positions, ..Mesh::default() };
+    let mut pair = quad.clone();
+    quad.faces.push(&[1, 2, 3, 0]);
+    [[0, 1, 2], [0, 2, 3]].iter().for_each(|half| pair.faces.push(half));
+    for mesh in [quad, pair] {
+        let body = cloth(&mesh, &MATERIAL).expect("sound");
+        assert_eq!(body.springs.len(), 6);
+        assert!(body.springs.iter().all(|spring| (spring.stiffness - 15.0).abs() < 1e-12), "{body:?}");
+        assert!((body.masses.iter().sum::<f64>() - 0.3).abs() < 1e-15);
+    }
+}
+
+/// Bending springs take their stretching from the edges: uniformly stretched, the sheet is what it was.
+#[test]
+fn bending_leaves_stretching_as_it_was() {
+    let mesh = irregular(10, 7);
+    let stiff = ClothMaterial { bending: 1e-7, bending_radius: Some(0.2), ..MATERIAL };
+    let [plain, stiff] = [MATERIAL, stiff].map(|material| cloth(&mesh, &material).expect("sound"));
+    assert!(stiff.springs.len() > plain.springs.len() + 100);
+    let [before, after] = [&plain, &stiff].map(|body| energy(body, [1.0, 1.0, 0.0]));
+    assert!((after / before - 1.0).abs() < 1e-12, "{before} {after}");
+}
+
+/// Rolled to the radius that was asked for, a sheet of squares or of equilateral triangles holds the plate's energy ½·B·A/R²,
+/// finely or coarsely divided.
+#[test]
+fn a_rolled_sheet_holds_the_energy_of_a_plate() {
+    let (bending, radius) = (1e-6, 0.4);
+    for side in [8u32, 16] {
+        let step = 1.0 / f64::from(side);
+        let mut mesh = Mesh::default();
+        for i in 0..=side {
+            mesh.positions.extend((0..=side).map(|j| DVec3::new(f64::from(i), 0.0, f64::from(j)) * step));
+        }
+        for i in 0..side {
+            for j in 0..side {
+                let at = |a: u32, b: u32| (i + a) * (side + 1) + j + b;
+                [[at(0, 0), at(0, 1), at(1, 1)], [at(0, 0), at(1, 1), at(1, 0)]]
+                    .iter()
+                    .for_each(|t| mesh.faces.push(t));
+            }
+        }
+        let bent = ClothMaterial { stiffness: 1e4, bending, bending_radius: Some(radius), ..MATERIAL };
+        let body = cloth(&mesh, &bent).expect("sound");
+        assert_eq!(body.warnings, [""; 0]);
+        // Rolled about z so that rows keep their distance: chords of length `step`.
+        let turn = 2.0 * (0.5 * step / radius).asin();
+        let rolled = |p: DVec3| {
+            let angle = turn * (p.x / step).round();
+            DVec3::new(radius * angle.sin(), radius * (1.0 - angle.cos()), p.z)
+        };
+        let mut energy = 0.0;
+        for spring in &body.springs {
+            let [a, b] = spring.ends.map(|point| body.points[point as usize]);
+            let stretch = (rolled(b) - rolled(a)).length() - (b - a).length();
+            energy += 0.5 * spring.stiffness * stretch * stretch;
+        }
+        // Of `side` rows of hinges the outermost half steps have none: area (1 − step). The hinge angle is `step`/R to third
+        // order, and so is the energy to second: (step/R)²/4 of it at most.
+        let exact = 0.5 * bending * (1.0 - step) / (radius * radius);
+        let slack = 0.25 * (step / radius) * (step / radius) + 1e-6;
+        assert!((energy / exact - 1.0).abs() < slack, "{side}: {energy} {exact}");
+    }
+}
+
+#[test]
+fn broken_meshes_are_used_with_a_sentence() {
+    let mut mesh = irregular(3, 5);
+    mesh.positions.push(DVec3::new(5.0, 5.0, 5.0));
+    mesh.faces.push(&[0, 1, 1]);
+    let spare = mesh.positions.len() as u32;
+    mesh.positions.push(DVec3::new(0.5, 0.7, 0.5));
+    mesh.faces.push(&[5, 6, spare]);
+    let body = cloth(&mesh, &MATERIAL).expect("usable");
+    let said = body.warnings.join("\n");
+    for part in ["1 triangle has no area", "1 vertex has no cloth around", "1 edge has more than two faces"] {
+        assert!(said.contains(part), "{said}");
+    }
+    mesh.positions[0].x = f64::NAN;
+    assert_eq!(cloth(&mesh, &MATERIAL).expect_err("it is broken").code(), Code::OutOfRange);
+}
