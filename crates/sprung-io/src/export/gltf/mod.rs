@@ -26,7 +26,6 @@ use crate::pack::{Pack, Unpack};
 pub const GLB: Exporter = Exporter {
     ending: "glb",
     description: "glTF: a clip of at most 257 frames, or the shape nearest to --at, for the web and game engines",
-    resume: None,
     heeds: &[Heeds::At, Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
