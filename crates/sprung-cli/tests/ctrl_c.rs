@@ -47,7 +47,7 @@ fn sprung(arguments: &[&str]) -> Command {
 fn a_simulation_keeps_its_whole_frames_and_says_where() {
     let folder = TempDir::new().unwrap();
     let run =
-        ["run", "jelly", "-o", "a.csv", "-o", "b.png", "--size", "64x48", "--seconds", "1e4", "--quiet"];
+        ["run", "jelly", "-o", "a.csv", "-o", "b.png", "--size", "64x48", "--seconds", "1e3", "--quiet"];
     let (said, names) = press_ctrl_c(&mut sprung(&run), folder.path(), "a.csv.partial", 100);
     assert_eq!(names, ["a.csv", "b.png"]);
     let csv = std::fs::read_to_string(folder.path().join("a.csv")).unwrap();
@@ -111,7 +111,7 @@ fn what_goes_wrong_after_ctrl_c_is_told_too() {
         "trap '' XFSZ && ulimit -f 16384 && exec \"$0\" \"$@\"",
         env!("CARGO_BIN_EXE_sprung"),
     ]);
-    command.args(["run", "jelly", "-o", "a.npz", "--seconds", "1e5", "--quiet"]);
+    command.args(["run", "jelly", "-o", "a.npz", "--seconds", "1e3", "--quiet"]);
     let (said, names) = press_ctrl_c(&mut command, folder.path(), "a.npz.partial", 9 << 19);
     let full = "sprung: a.npz: cannot be written: it would become larger than a file may be here";
     assert_eq!(said, format!("{full}\nsprung: interrupted\n"));

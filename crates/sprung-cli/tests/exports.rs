@@ -44,6 +44,12 @@ fn a_dry_run_tells_the_very_sizes_and_writes_nothing() {
     assert!(names(folder.path()).is_empty());
     assert!(told.starts_with("cloth: 10 frames, 63 steps of 0.01 s, 0.63 s simulated\n"), "{told}");
     assert!(told.contains("a.csv: 10 frames, about "), "{told}");
+    assert!(told.contains("a.png: 1 frame, about "), "{told}");
+    for (more, line) in [(&[][..], "a.glb: 10 frames, about "), (&["--at", "0.2"], "a.glb: 1 frame, about ")]
+    {
+        let output = run(folder.path(), &[&arguments[..], more].concat(), &["glb"]);
+        assert!(said(&output)[0].contains(line), "{}", said(&output)[0]);
+    }
 
     run(folder.path(), &["run", "cloth", "--frames", "9", "--quiet"], &exact);
     for ending in exact {

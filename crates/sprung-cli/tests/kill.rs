@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// Formats that keep files beside them, fill in what comes first, or draw; and the energy plot, which has the ledger kept.
-const OUTPUTS: &[&str] = &["a.csv", "a.npz", "a.pc2", "a.mdd", "a.gif", "a.png"];
+const OUTPUTS: &[&str] = &["a.csv", "a.npz", "a.pc2", "a.mdd", "a.usdc", "a.usda", "a.glb", "a.gif", "a.png"];
 const PLOT: &str = "a.svg";
 
 /// A run of a second or so in a debug build.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use sprung::scene::Scene;
 use sprung::{Code, Energy, Result, Simulation};
-use sprung_io::{Export, Exporter, Frame, Mark, Options, RunInfo};
+use sprung_io::{Export, Exporter, Frame, Heeds, Mark, Options, RunInfo};
 use sprung_render::export::EXPORTERS;
 use sprung_render::plot::EnergyPlot;
 
@@ -56,10 +56,10 @@ fn finish(export: Box<dyn Export>) -> u64 {
 }
 
 /// The run without an interruption, in a folder of its own: what it leaves.
-fn undisturbed(exporter: &Exporter) -> Vec<(String, Vec<u8>)> {
+fn undisturbed(exporter: &Exporter, options: &Options) -> Vec<(String, Vec<u8>)> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join(format!("a.{}", exporter.ending));
-    let options = Options { resumable: false, ..options() };
+    let options = Options { resumable: false, ..options.clone() };
     let mut export = (exporter.open)(&path, &info(), &options).expect("begun");
     give(&mut *export, 0..FRAMES).expect("written");
     finish(export);
@@ -101,7 +101,7 @@ fn refused(exporter: &Exporter, path: &Path, mark: &Mark) -> sprung::Error {
 #[test]
 fn what_follows_the_mark_is_forgotten_and_the_rest_goes_on_to_the_same_bytes() {
     for exporter in resumable() {
-        let expected = undisturbed(exporter);
+        let expected = undisturbed(exporter, &options());
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join(format!("a.{}", exporter.ending));
         for cut in [0, 1, 5, FRAMES] {
@@ -126,6 +126,31 @@ fn what_follows_the_mark_is_forgotten_and_the_rest_goes_on_to_the_same_bytes() {
             let found = tree(folder.path());
             assert_eq!(names(&found), names(&expected));
             assert!(found == expected, ".{} differs", exporter.ending);
+        }
+    }
+}
+
+/// What is kept of a format that shows one moment is the best until the mark, or comes after it.
+#[test]
+fn a_moment_before_or_after_the_mark_is_found() {
+    for exporter in resumable().filter(|exporter| exporter.heeds.contains(&Heeds::At)) {
+        for at in [0.0, 0.3, 0.9] {
+            let options = Options { at: Some(at), ..options() };
+            let expected = undisturbed(exporter, &options);
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let path = folder.path().join(format!("a.{}", exporter.ending));
+            let mut export = (exporter.open)(&path, &info(), &options).expect("begun");
+            give(&mut *export, 0..6).expect("written");
+            let mark = export.mark().expect("marked");
+            assert_eq!(mark.frames, 6);
+            give(&mut *export, 6..8).expect("written");
+            drop(export);
+            let resume = exporter.resume.expect("it can be resumed");
+            let mut export = resume(&path, &info(), &options, &mark).expect("it goes on");
+            assert_eq!(export.mark().expect("marked again"), mark, ".{}", exporter.ending);
+            give(&mut *export, 6..FRAMES).expect("written");
+            assert_eq!(finish(export), 1);
+            assert!(tree(folder.path()) == expected, ".{} differs at {at} s", exporter.ending);
         }
     }
 }

@@ -14,7 +14,15 @@ const WORTH_TELLING: u64 = 100_000_000;
 
 /// The outputs of a run, in the order in which they were given.
 pub struct Outputs<'a> {
-    planned: Vec<(&'a Path, Estimate)>,
+    planned: Vec<Planned<'a>>,
+}
+
+/// What is known of an output beforehand.
+struct Planned<'a> {
+    path: &'a Path,
+    estimate: Estimate,
+    /// It holds one moment, however many frames the run has.
+    is_still: bool,
 }
 
 impl<'a> Outputs<'a> {
@@ -29,7 +37,10 @@ impl<'a> Outputs<'a> {
         check_resumable(args, &exporters)?;
         let estimate = |(path, exporter): (&'a PathBuf, &&Exporter)| {
             let named = |error: Error| error.in_file(path.display().to_string());
-            Ok((path.as_path(), (exporter.estimate)(info, options).map_err(named)?))
+            let estimate = (exporter.estimate)(info, options).map_err(named)?;
+            // What heeds a size and a moment is a single picture, whatever was said.
+            let [at, size] = [Heeds::At, Heeds::Size].map(|heeds| exporter.heeds.contains(&heeds));
+            Ok(Planned { path, estimate, is_still: at && (size || options.at.is_some()) })
         };
         Ok(Self { planned: args.output.iter().zip(&exporters).map(estimate).collect::<Result<_>>()? })
     }
@@ -41,18 +52,17 @@ impl<'a> Outputs<'a> {
     /// [`Code::TooLarge`].
     pub fn check_room(&self) -> Result<()> {
         let mut disks: Vec<(String, &Path)> =
-            self.planned.iter().filter_map(|&(path, _)| Some((files::disk_of(path)?, path))).collect();
+            self.planned.iter().filter_map(|p| Some((files::disk_of(p.path)?, p.path))).collect();
         disks.sort();
         disks.dedup_by(|a, b| a.0 == b.0);
         for (disk, path) in disks {
             let Some(room) = files::room_beside(path) else { continue };
-            let here =
-                || self.planned.iter().filter(|(path, _)| files::disk_of(path).as_ref() == Some(&disk));
+            let here = || self.planned.iter().filter(|p| files::disk_of(p.path).as_ref() == Some(&disk));
             let sum = |estimates: &mut dyn Iterator<Item = Estimate>| {
                 estimates.fold(0u64, |sum, estimate| sum.saturating_add(estimate.bytes()))
             };
-            let exact = sum(&mut here().map(|planned| planned.1).filter(|e| matches!(e, Estimate::Exact(_))));
-            let all = sum(&mut here().map(|planned| planned.1));
+            let exact = sum(&mut here().map(|p| p.estimate).filter(|e| matches!(e, Estimate::Exact(_))));
+            let all = sum(&mut here().map(|p| p.estimate));
             let place = |need: u64| {
                 let what = if here().count() == 1 { "it needs" } else { "the outputs there need" };
                 format!("{what} {}, and the disk has {} left", bytes(need), bytes(room))
@@ -71,20 +81,18 @@ impl<'a> Outputs<'a> {
 
     /// Says how much will be written, if it is much.
     pub fn announce(&self) {
-        let total = self.planned.iter().fold(0u64, |sum, (_, estimate)| sum.saturating_add(estimate.bytes()));
+        let total = self.planned.iter().fold(0u64, |sum, p| sum.saturating_add(p.estimate.bytes()));
         if total >= WORTH_TELLING {
-            let each: Vec<String> = self
-                .planned
-                .iter()
-                .map(|(path, estimate)| format!("{} {}", size(*estimate), path.display()))
-                .collect();
+            let each: Vec<String> =
+                self.planned.iter().map(|p| format!("{} {}", size(p.estimate), p.path.display())).collect();
             note(format_args!("Will write {}.", each.join(", ")));
         }
     }
 
-    /// Says what would be written, a line for each output.
+    /// Says what would be written of so many frames, a line for each output.
     pub fn tell(&self, frames: u64) {
-        for (path, estimate) in &self.planned {
+        for Planned { path, estimate, is_still } in &self.planned {
+            let frames = if *is_still { 1 } else { frames };
             say(format_args!("{}: {}, {}", path.display(), counted(frames, "frame"), size(*estimate)));
         }
     }

@@ -19,6 +19,7 @@ use std::path::Path;
 use crc32fast::Hasher;
 use sprung::{Result, Vec3};
 
+use super::spool::{PIECE_BYTES, put};
 use super::stored_zip::{self, StoredZip, header_bytes};
 use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
 use crate::files::{PartialFile, spool_beside, write_error};
@@ -35,8 +36,6 @@ pub const NPZ: Exporter = Exporter {
 
 /// Length of every `.npy` header: room for any shape, and a multiple of 64 as the format asks.
 const NPY_HEADER_BYTES: usize = 128;
-/// Bytes that are written or moved at once.
-const PIECE_BYTES: usize = 1 << 15;
 /// Room on the disk that is set aside: for the pieces in flight and for the archive's directory.
 const RESERVE_BYTES: usize = 4 * PIECE_BYTES;
 
@@ -224,11 +223,13 @@ impl NpzExport {
 
         let start = archive.begin("time.npy")?;
         let bytes = whole.times.bytes;
-        take_content(&mut times, archive.out(), start, bytes, &mut |_| ControlFlow::Continue(()))?;
+        let content = start + NPY_HEADER_BYTES as u64;
+        put(&mut times, bytes, archive.out(), content, &mut |_| ControlFlow::Continue(()))?;
         end_array(&mut archive, start, "<f8", &[frames], whole.times)?;
 
         let start = archive.begin("velocities.npy")?;
-        take_content(&mut velocities, archive.out(), start, whole.velocities.bytes, progress)?;
+        let content = start + NPY_HEADER_BYTES as u64;
+        put(&mut velocities, whole.velocities.bytes, archive.out(), content, progress)?;
         end_array(&mut archive, start, "<f4", &[frames, points, 3], whole.velocities)?;
 
         Ok((archive.finish()?, [velocities, times]))
@@ -297,60 +298,6 @@ impl Tally {
         self.bytes += bytes.len() as u64;
         Ok(())
     }
-}
-
-/// Takes the first `bytes` of a temporary file over, behind the `.npy` header that starts at `start`: copies one with a
-/// name, which a run that is killed needs, as long as there is room; moves any other.
-fn take_content(
-    spool: &mut PartialFile,
-    out: &mut PartialFile,
-    start: u64,
-    bytes: u64,
-    progress: &mut Progress<'_>,
-) -> io::Result<()> {
-    if spool.has_name() {
-        let copied = transfer(spool, out, start, bytes, false, progress).and_then(|()| out.flush());
-        match copied {
-            Err(error)
-                if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) =>
-            {
-                out.roll_back_to(start)?;
-                out.seek(SeekFrom::Start(start))?;
-            }
-            done => return done,
-        }
-    }
-    transfer(spool, out, start, bytes, true, progress)
-}
-
-/// Writes the temporary file's content, last piece first; when it is moved, the temporary file is shortened as it goes.
-fn transfer(
-    spool: &mut PartialFile,
-    out: &mut PartialFile,
-    start: u64,
-    bytes: u64,
-    is_moved: bool,
-    progress: &mut Progress<'_>,
-) -> io::Result<()> {
-    let content = start + NPY_HEADER_BYTES as u64;
-    let mut piece = vec![0; PIECE_BYTES];
-    let mut left = bytes;
-    while left > 0 {
-        let from = (left - 1) / PIECE_BYTES as u64 * PIECE_BYTES as u64;
-        let piece = &mut piece[..(left - from) as usize];
-        spool.read_at(from, piece)?;
-        out.seek(SeekFrom::Start(content + from))?;
-        out.write_all(piece)?;
-        if is_moved {
-            // Out of the buffer before it is gone from where it was.
-            out.flush()?;
-            spool.shorten(from)?;
-        }
-        left = from;
-        // Asked to break off, it goes on: the motion is all there, and what is left is a copy.
-        let _ = progress(1.0 - left as f64 / bytes as f64);
-    }
-    Ok(())
 }
 
 /// The header of a `.npy` file, version 1.0, in C order: the magic string, the length of what follows, a Python

@@ -1,82 +1,67 @@
 //! What has to wait in a temporary file until the run is over.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use sprung::Result;
 
-use crate::files::spool_beside;
+use super::Progress;
+use crate::files::{PartialFile, spool_beside};
 
-/// Bytes that are moved at once.
-const PIECE_BYTES: usize = 1 << 15;
+/// Bytes that are written or moved at once.
+pub const PIECE_BYTES: usize = 1 << 15;
 
-/// A temporary file beside an output, which grows frame by frame and is moved into the output at the end.
-pub struct Spool {
-    file: BufWriter<File>,
-    whole: u64,
-}
-
-impl Spool {
-    /// An empty one, on the disk of the output `path`.
-    pub fn beside(path: &Path) -> Result<Self> {
-        Ok(Self { file: BufWriter::new(spool_beside(path)?), whole: 0 })
-    }
-
-    /// How many bytes of whole frames it holds.
-    pub fn whole(&self) -> u64 {
-        self.whole
-    }
-
-    /// Writes out what is buffered; all that is there belongs to whole frames.
-    pub fn commit(&mut self) -> io::Result<()> {
-        self.file.flush()?;
-        self.whole = self.file.get_mut().stream_position()?;
-        Ok(())
-    }
-
-    /// Forgets what does not belong to a whole frame.
-    pub fn roll_back(&mut self) -> io::Result<()> {
-        // A second handle, not a flush: after a failed write the buffer still holds what did not fit.
-        let mut file = self.file.get_ref().try_clone()?;
-        file.set_len(self.whole)?;
-        file.seek(SeekFrom::Start(self.whole))?;
-        let (_, _) = std::mem::replace(&mut self.file, BufWriter::new(file)).into_parts();
-        Ok(())
-    }
-
-    /// Puts its whole frames at the end of `out`, last piece first, and shortens the temporary file as it goes: it takes no
-    /// more room on the disk than it frees.
-    pub fn move_to(&mut self, out: &mut (impl Write + Seek), moved: &mut dyn FnMut(u64)) -> io::Result<()> {
-        self.roll_back()?;
-        let file = self.file.get_mut();
-        let start = out.seek(SeekFrom::End(0))?;
-        let mut piece = vec![0; PIECE_BYTES];
-        let mut left = self.whole;
-        while left > 0 {
-            let from = (left - 1) / PIECE_BYTES as u64 * PIECE_BYTES as u64;
-            let piece = &mut piece[..(left - from) as usize];
-            file.seek(SeekFrom::Start(from))?;
-            file.read_exact(piece)?;
-            out.seek(SeekFrom::Start(start + from))?;
-            out.write_all(piece)?;
-            file.set_len(from)?;
-            moved(left - from);
-            left = from;
+/// Puts the first `bytes` of a temporary file into `out`, from `start` on, where nothing may follow: copies one with a name,
+/// which a run that is killed needs, as long as there is room; moves any other. Moving needs room for one piece.
+pub fn put(
+    spool: &mut PartialFile,
+    bytes: u64,
+    out: &mut PartialFile,
+    start: u64,
+    progress: &mut Progress<'_>,
+) -> io::Result<()> {
+    if spool.has_name() {
+        let copied = transfer(spool, bytes, out, start, false, progress).and_then(|()| out.flush());
+        match copied {
+            Err(error)
+                if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) =>
+            {
+                out.roll_back_to(start)?;
+            }
+            done => return done,
         }
-        out.seek(SeekFrom::End(0))?;
-        Ok(())
     }
+    transfer(spool, bytes, out, start, true, progress)
 }
 
-impl Write for Spool {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+/// Writes the temporary file's content, last piece first; when it is moved, the temporary file is shortened as it goes.
+fn transfer(
+    spool: &mut PartialFile,
+    bytes: u64,
+    out: &mut PartialFile,
+    start: u64,
+    is_moved: bool,
+    progress: &mut Progress<'_>,
+) -> io::Result<()> {
+    let mut piece = vec![0; PIECE_BYTES];
+    let mut left = bytes;
+    while left > 0 {
+        let from = (left - 1) / PIECE_BYTES as u64 * PIECE_BYTES as u64;
+        let piece = &mut piece[..(left - from) as usize];
+        spool.read_at(from, piece)?;
+        out.seek(SeekFrom::Start(start + from))?;
+        out.write_all(piece)?;
+        if is_moved {
+            // Out of the buffer before it is gone from where it was.
+            out.flush()?;
+            spool.shorten(from)?;
+        }
+        left = from;
+        // Asked to break off, it goes on: the motion is all there, and what is left is a copy.
+        let _ = progress(1.0 - left as f64 / bytes as f64);
     }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
+    Ok(())
 }
 
 /// Room on the disk that is set aside for what has to be written when the run is over, so that a full disk costs no more
@@ -100,6 +85,12 @@ impl Reserve {
     pub fn give_back(&mut self) -> io::Result<()> {
         self.0.set_len(0)
     }
+
+    /// Gives back what is more than so many bytes.
+    pub fn give_back_to(&mut self, bytes: u64) -> io::Result<()> {
+        let length = self.0.metadata()?.len();
+        self.0.set_len(length.min(bytes))
+    }
 }
 
 /// Counts what is written to it.
@@ -118,28 +109,42 @@ impl Write for Length {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
+    use std::ops::ControlFlow;
 
     use super::*;
 
     #[test]
-    fn what_was_committed_is_moved_behind_what_is_there() {
+    fn what_is_there_is_put_behind_what_was_there() {
         for length in [0, 1, PIECE_BYTES, PIECE_BYTES + 1, 3 * PIECE_BYTES - 7] {
-            let folder = tempfile::tempdir().expect("a temporary folder");
-            let mut spool = Spool::beside(&folder.path().join("a")).expect("a spool");
-            let content: Vec<u8> = (0..length).map(|i| (i % 251) as u8).collect();
-            spool.write_all(&content).expect("written");
-            spool.commit().expect("written");
-            spool.write_all(b"half a frame").expect("written");
-            assert_eq!(spool.whole(), length as u64);
+            for keep in [false, true] {
+                let folder = tempfile::tempdir().expect("a temporary folder");
+                let path = folder.path().join("a");
+                let mut spool = PartialFile::spool(&path, "spool", keep).expect("a spool");
+                let content: Vec<u8> = (0..length).map(|i| (i % 251) as u8).collect();
+                spool.write_all(&content).expect("written");
+                spool.write_all(b"half a frame").expect("written");
 
-            let mut out = Cursor::new(b"head".to_vec());
-            let mut told = 0;
-            spool.move_to(&mut out, &mut |bytes| told += bytes).expect("moved");
-            assert_eq!(told, length as u64);
-            let out = out.into_inner();
-            assert_eq!(out[..4], *b"head");
-            assert_eq!(out[4..], content);
+                let mut out = PartialFile::create(&path).expect("a file");
+                out.write_all(b"head").expect("written");
+                let mut told = 0.0;
+                let mut progress = |share| {
+                    told = share;
+                    ControlFlow::Break(())
+                };
+                put(&mut spool, length as u64, &mut out, 4, &mut progress).expect("put");
+                assert_eq!(told, if length == 0 { 0.0 } else { 1.0 });
+                out.finish().expect("complete");
+                let found = std::fs::read(&path).expect("it is there");
+                assert_eq!(found[..4], *b"head");
+                assert_eq!(found[4..], content);
+
+                // A copy leaves it whole.
+                if keep {
+                    let mut left = vec![0; length];
+                    spool.read_at(0, &mut left).expect("it is all there");
+                    assert_eq!(left, content);
+                }
+            }
         }
     }
 }

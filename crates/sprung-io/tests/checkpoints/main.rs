@@ -6,6 +6,7 @@ mod keeping;
 
 use std::sync::Arc;
 
+use sprung::energy::LedgerSums;
 use sprung::scene::Scene;
 use sprung::{Change, Grab, Plane, Result, Simulation, Vec3};
 use sprung_io::checkpoint::{Plan, Recording, Saved};
@@ -44,6 +45,15 @@ fn small() -> Saved {
     let mut saved = Saved::new("row", &scene, &mut simulation);
     // Not of the day on which the test runs.
     saved.program = "0.1.0".to_owned();
+    // Nor of how the ledger is summed up, which may become faster: its last digits are no part of the promise.
+    saved.checkpoint.state.ledger = LedgerSums {
+        start: 2.4525001049041815,
+        work_in: -1.1250075422277042,
+        lost_in_dampers: 0.0023200850251552394,
+        lost_in_contact: 0.0,
+        integrator_error: -0.04683206211586318,
+        suspect_steps: 0,
+    };
     saved.recording = Some(Recording {
         plan: Plan {
             title: "Three in a row".into(),

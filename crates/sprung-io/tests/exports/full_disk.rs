@@ -16,13 +16,13 @@ use crate::{caches, glb, npz, usd};
 
 const POINTS: usize = 1000;
 
-/// Runs one of the children below, in a shell that first does `limit`. `$FOLDER` is where it writes.
-fn in_child(child: &str, limit: &str) {
+/// Runs one of the children, such as those below, in a shell that first does `limit`. `$FOLDER` is where it writes.
+pub fn in_child(child: &str, limit: &str) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let output = Command::new("sh")
         .args(["-c", &format!("{limit} && exec \"$0\" \"$@\"")])
         .arg(std::env::current_exe().expect("this program has a path"))
-        .args(["--exact", &format!("full_disk::{child}"), "--ignored", "--nocapture"])
+        .args(["--exact", child, "--ignored", "--nocapture"])
         .env("FOLDER", folder.path())
         .output()
         .expect("there is a shell");
@@ -31,17 +31,30 @@ fn in_child(child: &str, limit: &str) {
     assert!(output.status.success() && said.contains("1 passed"), "{child} failed:\n{said}");
 }
 
-fn folder() -> PathBuf {
+pub fn folder() -> PathBuf {
     std::env::var_os("FOLDER").expect("run by a test of this file").into()
 }
 
 /// Gives frames until one does not fit; then completes the file. Gives the frames that were whole.
 fn fill(exporter: sprung_io::Exporter, path: &Path, sentence: &str) -> u64 {
-    // Of a clip so few frames are allowed that they have to be larger.
-    let (points, planned) = if exporter.ending == "glb" { (4 * POINTS, 257) } else { (POINTS, 1000) };
-    let run = RunInfo { frames: planned, ..run_of(points) };
+    let run = run_for(&exporter);
     let export = begin(exporter, path, &run, 0).expect("the start fits");
     fill_up(export, &run, sentence)
+}
+
+/// The same in a run with checkpoints: temporary files have names.
+fn fill_marked(exporter: sprung_io::Exporter, path: &Path) -> u64 {
+    let run = run_for(&exporter);
+    let options = sprung_io::Options { resumable: true, ..sprung_io::Options::default() };
+    let mut export = (exporter.open)(path, &run, &options).expect("the start fits");
+    export.mark().expect("marked");
+    fill_up(export, &run, "cannot be written: the disk is full")
+}
+
+fn run_for(exporter: &sprung_io::Exporter) -> RunInfo {
+    // Of a clip so few frames are allowed that they have to be larger.
+    let (points, planned) = if exporter.ending == "glb" { (4 * POINTS, 257) } else { (POINTS, 1000) };
+    RunInfo { frames: planned, ..run_of(points) }
 }
 
 fn fill_up(mut export: Box<dyn sprung_io::Export>, run: &sprung_io::RunInfo, sentence: &str) -> u64 {
@@ -99,7 +112,7 @@ fn a_full_disk_keeps_the_whole_frames() {
     let disk = format!(
         r#"exec {namespace} sh -c 'mount -t tmpfs -o size=4m tmpfs "$FOLDER" && exec "$0" "$@"' "$0" "$@""#
     );
-    in_child("child_on_a_small_disk", &disk);
+    in_child("full_disk::child_on_a_small_disk", &disk);
 }
 
 #[test]
@@ -117,11 +130,7 @@ fn child_on_a_small_disk() {
     std::fs::remove_file(&path).expect("removed");
 
     // With checkpoints its temporary files have names and are copied; here there is no room for that, and they are moved.
-    let run = run_of(POINTS);
-    let options = sprung_io::Options { resumable: true, ..sprung_io::Options::default() };
-    let mut export = (NPZ.open)(&path, &run, &options).expect("the start fits");
-    export.mark().expect("marked");
-    let frames = fill_up(export, &run, "cannot be written: the disk is full") as usize;
+    let frames = fill_marked(NPZ, &path) as usize;
     check_npz(&path, frames);
     assert_eq!(names_in(&folder()), ["a.npz"]);
     std::fs::remove_file(path).expect("removed");
@@ -133,9 +142,11 @@ fn child_on_a_small_disk() {
         check_cache(&path, frames);
         std::fs::remove_file(path).expect("removed");
     }
-    for exporter in [USDC, USDA, USDZ] {
+    for (exporter, resumable) in
+        [(USDC, false), (USDA, false), (USDZ, false), (USDC, true), (USDA, true), (USDZ, true)]
+    {
         let path = folder().join("a").with_extension(exporter.ending);
-        let frames = fill(exporter, &path, full);
+        let frames = if resumable { fill_marked(exporter, &path) } else { fill(exporter, &path, full) };
         let samples = usd::samples(&*usd::read(&path), "/row/body.points");
         assert_eq!(samples.len() as u64, frames);
         for (frame, (time, found)) in samples.iter().enumerate() {
@@ -145,15 +156,18 @@ fn child_on_a_small_disk() {
         assert_eq!(names_in(&folder()).len(), 1);
         std::fs::remove_file(path).expect("removed");
     }
-    let path = folder().join("a.glb");
-    let frames = fill(GLB, &path, full);
-    let (times, drawn) = glb::read(&path);
-    assert_eq!(times.len() as u64, frames);
-    let first = snapshot(4 * POINTS, 0).positions;
-    for (frame, (positions, _)) in drawn[0].frames.iter().enumerate() {
-        glb::assert_near(positions, &first, &snapshot(4 * POINTS, frame as u64).positions);
+    for resumable in [false, true] {
+        let path = folder().join("a.glb");
+        let frames = if resumable { fill_marked(GLB, &path) } else { fill(GLB, &path, full) };
+        let (times, drawn) = glb::read(&path);
+        assert_eq!(times.len() as u64, frames);
+        let first = snapshot(4 * POINTS, 0).positions;
+        for (frame, (positions, _)) in drawn[0].frames.iter().enumerate() {
+            glb::assert_near(positions, &first, &snapshot(4 * POINTS, frame as u64).positions);
+        }
+        assert_eq!(names_in(&folder()).len(), 1);
+        std::fs::remove_file(path).expect("removed");
     }
-    std::fs::remove_file(path).expect("removed");
 
     for exporter in [OBJ, PLY, VTK] {
         let path = folder().join("a").with_extension(exporter.ending);
@@ -208,7 +222,7 @@ fn check_sequence(path: &Path, frames: u64) {
 /// What stops the file here is a limit of 2 MB on its size, with the signal that goes with it ignored.
 #[test]
 fn a_file_that_may_not_grow_keeps_the_whole_frames() {
-    in_child("child_under_a_size_limit", "trap '' XFSZ && ulimit -f 4096");
+    in_child("full_disk::child_under_a_size_limit", "trap '' XFSZ && ulimit -f 4096");
 }
 
 #[test]

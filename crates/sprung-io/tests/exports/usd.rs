@@ -250,3 +250,37 @@ fn memory_does_not_grow_with_the_frames() {
         assert_eq!(at_the_end[0], at_the_end[1], "{}", exporter.ending);
     }
 }
+
+/// Several hundred bodies, each with several attributes that move: a file is open for each output and what waits beside it,
+/// not for each of them.
+#[cfg(target_os = "linux")]
+#[test]
+fn many_bodies_take_few_files() {
+    crate::full_disk::in_child("usd::child_with_few_files", "ulimit -n 24");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "run by many_bodies_take_few_files"]
+fn child_with_few_files() {
+    use std::sync::Arc;
+
+    let mut builder = sprung::ModelBuilder::new();
+    for body in 0..300 {
+        builder.begin_body(&format!("body {body}")).expect("a name of its own");
+        builder.add_point(Vec3::X * body as f32, 1.0).expect("an ordinary point");
+    }
+    let (model, params, _) = builder.build().expect("an ordinary model");
+    let run = RunInfo { model: Arc::new(model), params, frames: 3, ..run_of(1) };
+    for exporter in ALL {
+        let path = crate::full_disk::folder().join("a").with_extension(exporter.ending);
+        write(exporter, &path, &run, &Options::default(), 0, 3);
+        let layer = read(&path);
+        for body in [0, 7, 299] {
+            let samples = samples(&*layer, &format!("/row/body_{body}.points"));
+            let expected =
+                (0..3).map(|frame| (frame as f64, bits(&snapshot(300, frame).positions[body..=body])));
+            assert!(samples.into_iter().eq(expected), "{}", exporter.ending);
+        }
+    }
+}

@@ -4,34 +4,40 @@
 //! as differences from the first, and an animation blends from each to the next. Readers keep all of them in memory, often
 //! as layers of one texture, so this is for short clips; with `--at` it is the still shape of one moment.
 //!
-//! The description of the data comes first in the file and is known last: the data grow in a temporary file.
+//! The description of the data comes first in the file and is known last: the data grow in a temporary file. In a run with
+//! checkpoints it has a name, and is copied, as that of an `.npz`.
 
 mod document;
 
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use sprung::{Code, Error, Params, Result, Snapshot, Vec3};
 
 use self::document::{Bounds, Document};
-use super::spool::{Reserve, Spool};
-use super::{Estimate, Export, Exporter, Frame, Geometry, Heeds, Options, Progress, RunInfo, Up, Written};
+use super::spool::{PIECE_BYTES, Reserve, put};
+use super::{
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Up, Written,
+};
 use crate::files::{PartialFile, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// `.glb`: a short clip, or the shape at one moment.
 pub const GLB: Exporter = Exporter {
     ending: "glb",
     description: "glTF: a clip of at most 257 frames, or the shape nearest to --at, for the web and game engines",
-    resume: None,
     heeds: &[Heeds::At, Heeds::Geometry, Heeds::Springs],
     estimate,
     open,
+    resume: Some(resume),
 };
 
 /// The first frame and 256 shapes: the fewest layers of a texture that browsers promise (WebGL 2, MAX_ARRAY_TEXTURE_LAYERS).
 const MOST_FRAMES: u64 = 257;
 /// What readers can be expected to hold in memory at once.
 const MOST_BYTES: u64 = 1 << 30;
+/// What the temporary file holds.
+const SHAPES: &str = "shapes";
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
     let document = plan(run, options)?;
@@ -74,28 +80,61 @@ fn plan(run: &RunInfo, options: &Options) -> Result<Document> {
 }
 
 fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let in_file = |error: Error| match error.place().file {
-        Some(_) => error,
-        None => error.in_file(path.display().to_string()),
-    };
-    let document = plan(run, options).map_err(in_file)?;
+    let document = plan_of(path, run, options)?;
     let file = PartialFile::create(path)?;
-    let data = Spool::beside(path)?;
-    let mut reserve = Reserve::beside(path)?;
-    let around = document.tail_bytes(0) + document.text_bytes(0);
-    reserve.add(around).map_err(|error| write_error(path, &error))?;
-    let clip = Clip { file, data, reserve, document, base: Vec::new(), bounds: Vec::new(), frames: 0 };
+    let data = PartialFile::spool(path, SHAPES, options.resumable)?;
+    let clip = Clip::new(path, document, file, data)?;
     Ok(match options.at {
         None => Box::new(clip),
-        Some(at) => Box::new(Still { clip, at, chosen: None }),
+        Some(at) => Box::new(Still { clip, at, chosen: None, frames: 0 }),
+    })
+}
+
+/// As [`plan`], and an error names the file.
+fn plan_of(path: &Path, run: &RunInfo, options: &Options) -> Result<Document> {
+    plan(run, options).map_err(|error| match error.place().file {
+        Some(_) => error,
+        None => error.in_file(path.display().to_string()),
+    })
+}
+
+fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
+    let document = plan_of(path, run, options)?;
+    let [file, data] = mark.files_of(path)?;
+    // Nothing is in the file before it is completed, and of a still nothing in the other either.
+    let shapes = if options.at.is_some() { 0 } else { mark.frames };
+    let fits = (file.bytes, data.head) == (0, 0)
+        && shapes <= MOST_FRAMES
+        && document.layout.frame_bytes().checked_mul(shapes) == Some(data.bytes);
+    let mut memory = Unpack::new(&mark.memory);
+    let chosen = match options.at.is_some() && memory.bool()? {
+        true => Some((memory.snapshot()?, memory.params()?)),
+        false => None,
+    };
+    memory.end()?;
+    let is_of_run = |(snapshot, params): &(Snapshot, Params)| {
+        let points = run.model.point_count();
+        [&snapshot.positions, &snapshot.velocities].iter().all(|vectors| vectors.len() == points)
+            && params.validate(&run.model).is_ok()
+    };
+    if !fits || !chosen.iter().all(is_of_run) {
+        return Err(Mark::strange(path));
+    }
+    let [file, data] = [file, data].map(|mark| PartialFile::resume(path, mark));
+    let mut clip = Clip::new(path, document, file?, data?)?;
+    clip.read_back(shapes).map_err(|error| write_error(path, &error))?;
+    Ok(match options.at {
+        None => Box::new(clip),
+        Some(at) => Box::new(Still { clip, at, chosen, frames: mark.frames }),
     })
 }
 
 /// All frames, as shapes that are blended.
 struct Clip {
     file: PartialFile,
-    data: Spool,
-    /// For the description, and for what follows the shapes.
+    /// The shapes so far.
+    data: PartialFile,
+    /// For the description, for what follows the shapes, and for the pieces that are moved.
     reserve: Reserve,
     document: Document,
     /// Positions and normals of the first frame.
@@ -106,6 +145,28 @@ struct Clip {
 }
 
 impl Clip {
+    /// One without frames.
+    fn new(path: &Path, document: Document, file: PartialFile, data: PartialFile) -> Result<Self> {
+        let mut reserve = Reserve::beside(path)?;
+        let around = document.tail_bytes(0) + document.text_bytes(0);
+        reserve.add(around + 2 * PIECE_BYTES as u64).map_err(|error| write_error(path, &error))?;
+        Ok(Self { file, data, reserve, document, base: Vec::new(), bounds: Vec::new(), frames: 0 })
+    }
+
+    /// Goes on after the shapes that are there.
+    fn read_back(&mut self, frames: u64) -> io::Result<()> {
+        let mut bytes = vec![0; self.document.layout.frame_bytes() as usize];
+        for frame in 0..frames {
+            self.data.read_at(frame * bytes.len() as u64, &mut bytes)?;
+            let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+            let vector = |b: &[u8]| Vec3::new(float(&b[..4]), float(&b[4..8]), float(&b[8..]));
+            let shape: Vec<Vec3> = bytes.chunks_exact(12).map(vector).collect();
+            self.count_in(shape);
+        }
+        self.data.seek(SeekFrom::End(0))?;
+        self.reserve.add(self.share(frames) - self.share(0))
+    }
+
     fn take(&mut self, frame: &Frame<'_>) -> io::Result<()> {
         let mut shape = self.document.shape(frame);
         if self.frames > 0 {
@@ -117,32 +178,43 @@ impl Clip {
             let [x, y, z] = vector.to_array().map(f32::to_le_bytes);
             self.data.write_all(&[x, y, z].concat())?;
         }
-        let document = &self.document;
-        let share = |frames| document.tail_bytes(frames) + document.text_bytes(frames);
-        self.reserve.add(share(self.frames + 1) - share(self.frames))?;
+        self.reserve.add(self.share(self.frames + 1) - self.share(self.frames))?;
         self.data.commit()?;
+        self.count_in(shape);
+        Ok(())
+    }
 
+    /// What so many frames take besides their shapes, at most.
+    fn share(&self, frames: u64) -> u64 {
+        self.document.tail_bytes(frames) + self.document.text_bytes(frames)
+    }
+
+    /// Counts a shape that has been written.
+    fn count_in(&mut self, shape: Vec<Vec3>) {
         self.bounds.extend(self.document.layout.bounds(&shape));
         if self.frames == 0 {
             self.base = shape;
         }
         self.frames += 1;
-        Ok(())
     }
 
     fn complete(mut self, progress: &mut Progress<'_>) -> Result<Written> {
         let path = self.file.path().to_owned();
         self.assemble(progress).map_err(|error| write_error(&path, &error))?;
-        Ok(Written { bytes: self.file.finish()?, path, frames: self.frames })
+        let bytes = self.file.finish()?;
+        // Not before: a run that is killed until then needs it.
+        self.data.discard();
+        Ok(Written { bytes, path, frames: self.frames })
     }
 
     /// The container: a header of twelve bytes, the description as JSON, the data. Each chunk begins with its length and
     /// its kind and is a multiple of four bytes long ("GLB file format specification" in the glTF 2.0 specification).
     fn assemble(&mut self, progress: &mut Progress<'_>) -> io::Result<()> {
         let Self { file, data, reserve, document, bounds, frames, .. } = self;
-        reserve.give_back()?;
-        let all = data.whole();
+        data.roll_back()?;
+        let all = document.layout.frame_bytes() * *frames;
         let tail = document.tail(*frames);
+        reserve.give_back_to(tail.len() as u64)?;
         let mut text = document.text(*frames, bounds, all).into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
         let data_bytes = all + tail.len() as u64;
@@ -158,13 +230,17 @@ impl Clip {
         file.write_all(&text)?;
         file.write_all(&narrow(data_bytes)?)?;
         file.write_all(b"BIN\0")?;
-        let mut done = 0;
-        data.move_to(file, &mut |bytes| {
-            done += bytes;
-            // Asked to break off, it goes on: the motion is all there, and what is left is a copy.
-            let _ = progress(done as f64 / all as f64);
-        })?;
+        let start = file.stream_position()?;
+        put(data, all, file, start, progress)?;
+        reserve.give_back()?;
+        file.seek(SeekFrom::End(0))?;
         file.write_all(&tail)
+    }
+
+    fn mark_with(&mut self, frames: u64, memory: Pack) -> Result<Mark> {
+        let marked = self.file.mark("", 0).and_then(|file| Ok(vec![file, self.data.mark(SHAPES, 0)?]));
+        let files = marked.map_err(|error| write_error(self.file.path(), &error))?;
+        Ok(Mark { frames, files, memory: memory.into_bytes() })
     }
 }
 
@@ -184,6 +260,10 @@ impl Export for Clip {
     fn finish(self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {
         self.complete(progress)
     }
+
+    fn mark(&mut self) -> Result<Mark> {
+        self.mark_with(self.frames, Pack::new())
+    }
 }
 
 /// The frame nearest to a time.
@@ -191,6 +271,8 @@ struct Still {
     clip: Clip,
     at: f64,
     chosen: Option<(Snapshot, Params)>,
+    /// Looked at so far.
+    frames: u64,
 }
 
 impl Export for Still {
@@ -199,7 +281,17 @@ impl Export for Still {
         if self.chosen.as_ref().is_none_or(|(best, _)| off(frame.snapshot.time) <= off(best.time)) {
             self.chosen = Some((frame.snapshot.clone(), frame.params.clone()));
         }
+        self.frames += 1;
         Ok(())
+    }
+
+    fn mark(&mut self) -> Result<Mark> {
+        let mut memory = Pack::new();
+        memory.u8(self.chosen.is_some().into());
+        if let Some((snapshot, params)) = &self.chosen {
+            memory.snapshot(snapshot).params(params);
+        }
+        self.clip.mark_with(self.frames, memory)
     }
 
     fn finish(mut self: Box<Self>, progress: &mut Progress<'_>) -> Result<Written> {

@@ -9,8 +9,10 @@ use sprung::{Code, Error, Result};
 use super::crate_file::{self, BOOTSTRAP_BYTES, FrameLayout};
 use super::layer::{Layer, Span};
 use super::package::{self, Package};
+use crate::export::Mark;
 use crate::export::spool::{Length, Reserve};
 use crate::files::{PartialFile, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// How long a file with so many frames is, to the byte.
 pub fn bytes(layer: &Layer, package: Option<&Package>, frames: u64) -> u64 {
@@ -25,6 +27,11 @@ fn rest_bytes(layer: &Layer) -> u64 {
     // It takes everything.
     let _ = crate_file::write_rest(&mut rest, layer, Span::default());
     rest.0
+}
+
+/// What lies before the first frame, and is filled in when the file is completed.
+fn head_bytes(package: Option<&Package>) -> u64 {
+    package.map_or(0, Package::content_start) + BOOTSTRAP_BYTES
 }
 
 /// A crate being written, alone or in an archive.
@@ -43,25 +50,63 @@ pub struct Binary {
 impl Binary {
     /// Begins a file for frames of this layer: an archive if `package` says how the file in it is called.
     pub fn create(path: &Path, layer: &Layer, package: Option<Package>) -> Result<Self> {
-        let mut file = PartialFile::create(path)?;
+        let file = PartialFile::create(path)?;
+        let mut begun = Self::with(path, layer, package, file)?;
+        // Room for what is known only at the end.
+        let head = vec![0; begun.head_bytes() as usize];
+        let written = begun.file.write_all(&head).and_then(|()| begun.file.commit());
+        written.map_err(|error| write_error(path, &error))?;
+        Ok(begun)
+    }
+
+    /// Goes on with a file where it was marked. What was at its head is filled in again when it is completed.
+    pub fn resume(path: &Path, layer: &Layer, package: Option<Package>, mark: &Mark) -> Result<Self> {
+        let [file] = mark.files_of(path)?;
+        let mut memory = Unpack::new(&mark.memory);
+        let first = memory.u64()?;
+        memory.end()?;
+        let content = mark.frames.checked_mul(FrameLayout::new(&layer.columns).bytes);
+        let fits = file.head == head_bytes(package.as_ref())
+            && content.is_some()
+            && content == file.bytes.checked_sub(file.head)
+            && first.checked_add(mark.frames).is_some();
+        if !fits {
+            return Err(Mark::strange(path));
+        }
+        let mut resumed = Self::with(path, layer, package, PartialFile::resume(path, file)?)?;
+        let tables = mark.frames * resumed.frames.table_bytes();
+        resumed.reserve.add(tables).map_err(|error| write_error(path, &error))?;
+        resumed.whole = Span { first, count: mark.frames };
+        // What was marked is what follows the bootstrap.
+        resumed.checksum = Hasher::new_with_initial_len(file.crc32, file.bytes - file.head);
+        Ok(resumed)
+    }
+
+    /// One without frames, in this file.
+    fn with(path: &Path, layer: &Layer, package: Option<Package>, file: PartialFile) -> Result<Self> {
         let mut reserve = Reserve::beside(path)?;
         let rest_bytes = rest_bytes(layer);
-        let begun = reserve.add(rest_bytes + package::MOST_BYTES).and_then(|()| {
-            // Room for what is known only at the end.
-            let start = package.as_ref().map_or(0, Package::content_start);
-            file.write_all(&vec![0; (start + BOOTSTRAP_BYTES) as usize])?;
-            file.commit()
-        });
-        begun.map_err(|error| write_error(path, &error))?;
-        Ok(Self {
-            file,
-            package,
-            reserve,
-            frames: FrameLayout::new(&layer.columns),
-            rest_bytes,
-            checksum: Hasher::new(),
-            whole: Span::default(),
-        })
+        reserve.add(rest_bytes + package::MOST_BYTES).map_err(|error| write_error(path, &error))?;
+        let frames = FrameLayout::new(&layer.columns);
+        let (checksum, whole) = (Hasher::new(), Span::default());
+        Ok(Self { file, package, reserve, frames, rest_bytes, checksum, whole })
+    }
+
+    /// How far it has got.
+    pub fn mark(&mut self) -> io::Result<Mark> {
+        let file = self.file.mark("", self.head_bytes())?;
+        let mut memory = Pack::new();
+        memory.u64(self.whole.first);
+        Ok(Mark { frames: self.whole.count, files: vec![file], memory: memory.into_bytes() })
+    }
+
+    /// The frames that are in it.
+    pub fn span(&self) -> Span {
+        self.whole
+    }
+
+    fn head_bytes(&self) -> u64 {
+        head_bytes(self.package.as_ref())
     }
 
     pub fn path(&self) -> &Path {

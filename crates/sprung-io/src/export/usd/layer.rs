@@ -83,6 +83,11 @@ impl Span {
     pub fn last(self) -> u64 {
         self.first + self.count.saturating_sub(1)
     }
+
+    /// The number of the frame that must follow, once there is one.
+    pub fn next(self) -> Option<u64> {
+        (self.count > 0).then(|| self.first + self.count)
+    }
 }
 
 /// A name as USD allows it: ASCII letters, digits and `_`, not a digit first, and unlike those in `taken`.

@@ -1,25 +1,37 @@
 //! `.usda`: a USD layer as text.
 //!
-//! All samples of an attribute stand together, so each column of the frames grows as text in a temporary file of its own
-//! and is moved to its place at the end. Numbers are as short as they can be and still read back to the same float32.
+//! All samples of an attribute stand together. Until the run is over they wait, frame after frame and as binary numbers, in
+//! one temporary file; the room that they will take as text is set aside meanwhile. Numbers are as short as they can be and
+//! still read back to the same float32.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use sprung::Result;
 
+use super::crate_file::write_floats;
 use super::layer::{Attribute, Layer, Prim, Span, Value};
-use crate::export::Progress;
-use crate::export::spool::{Length, Reserve, Spool};
+use crate::export::spool::{Length, Reserve};
+use crate::export::{Mark, Progress};
 use crate::files::{PartialFile, write_error};
+use crate::pack::{Pack, Unpack};
 
 /// Bytes that a vector takes: three numbers of nine digits, a point and often a sign, and what stands between them.
 const VECTOR_BYTES: u64 = 40;
+/// The most that a vector takes, and a sample besides its vectors.
+const MOST_VECTOR_BYTES: u64 = 80;
+const MOST_SAMPLE_BYTES: u64 = 80;
+/// What the temporary file holds.
+const SAMPLES: &str = "samples";
 
 /// About how long a text with so many frames is.
 pub fn bytes(layer: &Layer, frames: u64) -> u64 {
-    let vectors: u64 = layer.columns.iter().map(|&vectors| vectors as u64).sum();
-    around(layer) + frames * (VECTOR_BYTES * vectors + 20 * layer.columns.len() as u64)
+    around(layer) + frames * (VECTOR_BYTES * vectors(layer) + 20 * layer.columns.len() as u64)
+}
+
+/// How many vectors a frame has.
+fn vectors(layer: &Layer) -> u64 {
+    layer.columns.iter().map(|&vectors| vectors as u64).sum()
 }
 
 /// How long the text around the samples is.
@@ -33,43 +45,142 @@ fn around(layer: &Layer) -> u64 {
 /// A text being written.
 pub struct Text {
     file: PartialFile,
-    columns: Vec<Spool>,
-    /// For the text around the samples.
+    samples: Samples,
+    /// For the whole text.
     reserve: Reserve,
+    /// How long the text of the samples is.
+    text_bytes: u64,
+}
+
+/// The columns of all frames.
+struct Samples {
+    file: PartialFile,
+    /// Where in a frame each column lies, and how many bytes it has.
+    places: Vec<(u64, usize)>,
+    frame_bytes: u64,
     whole: Span,
 }
 
 impl Text {
-    /// Begins a file for frames of this layer.
-    pub fn create(path: &Path, layer: &Layer) -> Result<Self> {
+    /// Begins a file for frames of this layer; with `keep` what waits beside it has a name.
+    pub fn create(path: &Path, layer: &Layer, keep: bool) -> Result<Self> {
         let file = PartialFile::create(path)?;
-        let columns = layer.columns.iter().map(|_| Spool::beside(path)).collect::<Result<_>>()?;
+        let samples = PartialFile::spool(path, SAMPLES, keep)?;
+        Self::with(path, layer, file, samples, Span::default(), 0)
+    }
+
+    /// Goes on with a file where it was marked.
+    pub fn resume(path: &Path, layer: &Layer, mark: &Mark) -> Result<Self> {
+        let [file, samples] = mark.files_of(path)?;
+        let mut memory = Unpack::new(&mark.memory);
+        let (first, text_bytes) = (memory.u64()?, memory.u64()?);
+        memory.end()?;
+        let (columns, vectors) = (layer.columns.len() as u64, vectors(layer));
+        let most = mark.frames.saturating_mul(MOST_VECTOR_BYTES * vectors + MOST_SAMPLE_BYTES * columns);
+        let fits = (file.bytes, samples.head) == (0, 0)
+            && mark.frames.checked_mul(12 * vectors) == Some(samples.bytes)
+            && first.checked_add(mark.frames).is_some()
+            && text_bytes <= most;
+        if !fits {
+            return Err(Mark::strange(path));
+        }
+        let [file, samples] = [file, samples].map(|mark| PartialFile::resume(path, mark));
+        Self::with(path, layer, file?, samples?, Span { first, count: mark.frames }, text_bytes)
+    }
+
+    fn with(
+        path: &Path,
+        layer: &Layer,
+        file: PartialFile,
+        samples: PartialFile,
+        whole: Span,
+        text_bytes: u64,
+    ) -> Result<Self> {
         let mut reserve = Reserve::beside(path)?;
         // A little more than is counted: the span will have more digits.
-        reserve.add(around(layer) + 64).map_err(|error| write_error(path, &error))?;
-        Ok(Self { file, columns, reserve, whole: Span::default() })
+        reserve.add(around(layer) + 64 + text_bytes).map_err(|error| write_error(path, &error))?;
+        Ok(Self { file, samples: Samples::new(layer, samples, whole), reserve, text_bytes })
     }
 
     pub fn path(&self) -> &Path {
         self.file.path()
     }
 
+    /// The frames that are in it.
+    pub fn span(&self) -> Span {
+        self.samples.whole
+    }
+
     /// Takes the columns of one more frame.
     pub fn frame(&mut self, index: u64, columns: &[Vec<[f32; 3]>]) -> Result<()> {
         self.take(index, columns).map_err(|error| {
             // What has come of it goes, so that another may be tried. If that fails, so will the end.
-            let _ = self.columns.iter_mut().try_for_each(Spool::roll_back);
+            let _ = self.samples.file.roll_back();
             write_error(self.file.path(), &error)
         })
     }
 
     fn take(&mut self, index: u64, columns: &[Vec<[f32; 3]>]) -> io::Result<()> {
-        for (spool, column) in self.columns.iter_mut().zip(columns) {
-            write!(spool, "            {index}: ")?;
-            write_vectors(spool, column)?;
-            spool.write_all(b",\n")?;
-        }
-        self.columns.iter_mut().try_for_each(Spool::commit)?;
+        let mut text = Length(0);
+        columns.iter().try_for_each(|column| write_sample(&mut text, index, column))?;
+        self.reserve.add(text.0)?;
+        self.samples.take(index, columns)?;
+        self.text_bytes += text.0;
+        Ok(())
+    }
+
+    /// How far it has got.
+    pub fn mark(&mut self) -> io::Result<Mark> {
+        let Self { file, samples, text_bytes, .. } = self;
+        let mut memory = Pack::new();
+        memory.u64(samples.whole.first).u64(*text_bytes);
+        let files = vec![file.mark("", 0)?, samples.file.mark(SAMPLES, 0)?];
+        Ok(Mark { frames: samples.whole.count, files, memory: memory.into_bytes() })
+    }
+
+    /// Completes the file and tells how many bytes and frames it has.
+    pub fn finish(self, layer: &Layer, progress: &mut Progress<'_>) -> Result<(u64, u64)> {
+        let Self { mut file, mut samples, mut reserve, .. } = self;
+        let span = samples.whole;
+        let mut complete = || {
+            samples.file.roll_back()?;
+            reserve.give_back()?;
+            let all = span.count * samples.frame_bytes;
+            let mut done = 0;
+            write_layer(&mut file, layer, span, &mut |out, column| {
+                for frame in 0..span.count {
+                    let vectors = samples.read(frame, column)?;
+                    write_sample(out, span.first + frame, &vectors)?;
+                    done += 12 * vectors.len() as u64;
+                    // Asked to break off, it goes on: the motion is all there, and what is left is a copy.
+                    let _ = progress(done as f64 / all as f64);
+                }
+                Ok(())
+            })
+        };
+        complete().map_err(|error| write_error(file.path(), &error))?;
+        let bytes = file.finish()?;
+        // Not before: a run that is killed until then needs them.
+        samples.file.discard();
+        Ok((bytes, span.count))
+    }
+}
+
+impl Samples {
+    fn new(layer: &Layer, file: PartialFile, whole: Span) -> Self {
+        let mut frame_bytes = 0;
+        let places = layer.columns.iter().map(|&vectors| {
+            let place = (frame_bytes, 12 * vectors);
+            frame_bytes += place.1 as u64;
+            place
+        });
+        let places = places.collect();
+        Self { file, places, frame_bytes, whole }
+    }
+
+    fn take(&mut self, index: u64, columns: &[Vec<[f32; 3]>]) -> io::Result<()> {
+        columns.iter().try_for_each(|column| write_floats(&mut self.file, column.as_flattened()))?;
+        self.file.commit()?;
         if self.whole.count == 0 {
             self.whole.first = index;
         }
@@ -77,24 +188,21 @@ impl Text {
         Ok(())
     }
 
-    /// Completes the file and tells how many bytes and frames it has.
-    pub fn finish(self, layer: &Layer, progress: &mut Progress<'_>) -> Result<(u64, u64)> {
-        let Self { mut file, columns, mut reserve, whole } = self;
-        reserve.give_back().map_err(|error| write_error(file.path(), &error))?;
-        let all: u64 = columns.iter().map(Spool::whole).sum();
-        let mut done = 0;
-        let mut moved = |bytes| {
-            done += bytes;
-            // Asked to break off, it goes on: the motion is all there, and what is left is a copy.
-            let _ = progress(done as f64 / all as f64);
-        };
-        let mut columns: Vec<Option<Spool>> = columns.into_iter().map(Some).collect();
-        let written = write_layer(&mut file, layer, whole, &mut |out, column| {
-            columns[column].take().map_or(Ok(()), |mut spool| spool.move_to(out, &mut moved))
-        });
-        written.map_err(|error| write_error(file.path(), &error))?;
-        Ok((file.finish()?, whole.count))
+    /// A column of one frame, counted from the first that is there.
+    fn read(&mut self, frame: u64, column: usize) -> io::Result<Vec<[f32; 3]>> {
+        let (start, bytes) = self.places[column];
+        let mut read = vec![0; bytes];
+        self.file.read_at(frame * self.frame_bytes + start, &mut read)?;
+        let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        Ok(read.chunks_exact(12).map(|b| [float(&b[..4]), float(&b[4..8]), float(&b[8..])]).collect())
     }
+}
+
+/// A line of samples: a frame's number and the vectors.
+fn write_sample(out: &mut impl Write, index: u64, vectors: &[[f32; 3]]) -> io::Result<()> {
+    write!(out, "            {index}: ")?;
+    write_vectors(out, vectors)?;
+    out.write_all(b",\n")
 }
 
 /// Writes the text; `samples` puts those of a column in their place.
