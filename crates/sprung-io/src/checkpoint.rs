@@ -5,16 +5,18 @@
 //! within 32 bits in a row, and so every flipped byte, whatever the length; a cut is found by the lengths. Positions and
 //! velocities are held against the 64-bit hash of the state besides. All numbers are little-endian.
 //!
-//! What version 1 holds, section by section, is in [`sections`], and never changes: a later version gets another number,
-//! and this one is still read. See also `docs/checkpoints.md`.
+//! What a version holds, section by section, is in [`sections`], and never changes: a later version gets another number,
+//! and earlier ones are still read. See also `docs/checkpoints.md`.
 
 mod container;
 mod keeper;
 mod sections;
 
 use std::io::{Read, Write};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use sprung::build::Mesh;
 use sprung::scene::Scene;
 use sprung::{Checkpoint, Code, Error, Model, Result, Simulation};
 
@@ -28,7 +30,7 @@ pub use keeper::{Keeper, Stored};
 pub const ENDING: &str = "sprung";
 
 /// The newest version of the format, which is the one that is written.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// What a checkpoint file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +41,8 @@ pub struct Saved {
     pub scene_name: String,
     /// The scene, as TOML.
     pub scene: String,
+    /// The meshes that its bodies are made from, with the names that the scene has for them: their files are not needed.
+    pub meshes: Vec<(String, Arc<Mesh>)>,
     /// [`Model::fingerprint`] of the model that the scene was built into.
     pub fingerprint: u64,
     /// The simulation.
@@ -93,6 +97,7 @@ impl Saved {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             scene_name: scene_name.to_owned(),
             scene: scene.to_toml(),
+            meshes: scene.meshes(),
             fingerprint: simulation.model().fingerprint(),
             checkpoint: simulation.checkpoint(),
             recording: None,
@@ -116,12 +121,14 @@ impl Saved {
         sections::read(file, bytes)
     }
 
-    /// The scene.
+    /// The scene, with its meshes.
     ///
     /// # Errors
-    /// As [`Scene::parse`].
+    /// As [`Scene::parse`] and [`Scene::take_meshes`].
     pub fn scene(&self) -> Result<Scene> {
-        Scene::parse(&self.scene, "the scene in the checkpoint")
+        let mut scene = Scene::parse(&self.scene, "the scene in the checkpoint")?;
+        scene.take_meshes(&self.meshes)?;
+        Ok(scene)
     }
 
     /// Goes on with the simulation, on a model that its scene was built into.

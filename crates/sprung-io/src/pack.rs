@@ -3,6 +3,7 @@
 //! Reading is guarded: a length is held against the bytes that are left before any memory is taken, and the end must come
 //! where it is expected.
 
+mod mesh;
 mod params;
 
 use sprung::{Code, Error, Result, Vec3};
@@ -72,6 +73,13 @@ impl Pack {
         self.u64(values.len() as u64);
         self.0.reserve(4 * values.len());
         values.iter().fold(self, |pack, &value| pack.f32(value))
+    }
+
+    /// A count, and so many numbers.
+    pub fn u32s(&mut self, values: &[u32]) -> &mut Self {
+        self.u64(values.len() as u64);
+        self.0.reserve(4 * values.len());
+        values.iter().fold(self, |pack, &value| pack.u32(value))
     }
 
     /// A count, and so many numbers.
@@ -211,6 +219,15 @@ impl<'a> Unpack<'a> {
     /// [`Code::Unreadable`].
     pub fn f32s(&mut self) -> Result<Vec<f32>> {
         Ok(self.several(4)?.chunks_exact(4).map(f32_of).collect())
+    }
+
+    /// A count, and so many numbers.
+    ///
+    /// # Errors
+    /// [`Code::Unreadable`].
+    pub fn u32s(&mut self) -> Result<Vec<u32>> {
+        let value = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        Ok(self.several(4)?.chunks_exact(4).map(value).collect())
     }
 
     /// A count, and so many numbers.

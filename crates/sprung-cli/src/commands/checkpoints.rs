@@ -1,8 +1,10 @@
 //! The checkpoints of a run: when one is due, and what it holds.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
+use sprung::build::Mesh;
 use sprung::scene::Scene;
 use sprung::{Code, Error, Result, Simulation};
 use sprung_io::checkpoint::{Keeper, Plan as Recorded, Recording, Saved};
@@ -23,6 +25,7 @@ pub struct Checkpoints {
     every: Every,
     scene_name: String,
     scene: String,
+    meshes: Vec<(String, Arc<Mesh>)>,
     fingerprint: u64,
     plan: Recorded,
     /// When the last one was taken, and how many frames had been recorded then; none before the first.
@@ -73,6 +76,7 @@ impl Checkpoints {
             every: args.every.unwrap_or(EVERY),
             scene_name: name.to_owned(),
             scene: scene.to_toml(),
+            meshes: scene.meshes(),
             fingerprint: 0,
             plan,
             last: None,
@@ -88,6 +92,7 @@ impl Checkpoints {
             every,
             scene_name: saved.scene_name.clone(),
             scene: saved.scene.clone(),
+            meshes: saved.meshes.clone(),
             fingerprint: saved.fingerprint,
             plan,
             last,
@@ -133,6 +138,7 @@ impl Checkpoints {
                 program: env!("CARGO_PKG_VERSION").to_owned(),
                 scene_name: self.scene_name.clone(),
                 scene: self.scene.clone(),
+                meshes: self.meshes.clone(),
                 fingerprint: self.fingerprint,
                 checkpoint: simulation.checkpoint(),
                 recording: Some(recording),

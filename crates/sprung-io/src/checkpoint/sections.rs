@@ -1,4 +1,4 @@
-//! What the sections of version 1 hold, in their order:
+//! What the sections of version 2 hold, in their order; version 1 is the same without `meshes`:
 //!
 //! | section | content |
 //! |---|---|
@@ -9,10 +9,12 @@
 //! | `parameters` | dt, substeps, gravity, planes, forces, carried points, grabs |
 //! | `masses`, `stiffness`, `damping`, `rest-lengths` | a count (u64), and so many f32 |
 //! | `pins`, `cuts` | a count (u64), and so many bytes, 0 or 1 |
+//! | `meshes` | a count (u64), and for each mesh that bodies of the scene are made from: the name of its file as the scene has it (text); coordinates of its vertices (f64s); the numbers of corners of its faces (u32s), their corners (u32s); the ends of its lines and the corners of its tetrahedra (u32s); a count (u64) of groups, each with a name (text) and vertices (u32s); red, green and blue of each vertex, or nothing (f32s); a count (u64) of warnings, each a text |
 //! | `run` | what the recording is to do, as JSON; there only if there is one |
 //! | `outputs` | a count (u64), and for each output: frames (u64), a count (u64) of files, each with part (text), length (u64), head (u64), CRC-32 (u32); what else the format remembers (bytes) |
 //!
-//! A text is its length in bytes (u64) and UTF-8; bytes are a length (u64) and the bytes.
+//! A text is its length in bytes (u64) and UTF-8; bytes are a length (u64) and the bytes; f64s, f32s and u32s are a count (u64)
+//! and the numbers.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
@@ -27,7 +29,7 @@ use crate::export::{FileMark, Mark};
 use crate::pack::{Pack, Unpack};
 
 /// Sections of a simulation, and those that a recording adds.
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     "about",
     "scene",
     "clock",
@@ -42,7 +44,10 @@ const NAMES: [&str; 14] = [
     "damping",
     "rest-lengths",
     "cuts",
+    "meshes",
 ];
+/// How many of them version 1 has.
+const OF_VERSION_1: usize = 14;
 const OF_RECORDINGS: [&str; 2] = ["run", "outputs"];
 
 pub fn write(saved: &Saved, out: &mut impl Write) -> io::Result<()> {
@@ -71,7 +76,8 @@ pub fn write(saved: &Saved, out: &mut impl Write) -> io::Result<()> {
             "stiffness" => pack.f32s(&params.spring_stiffness),
             "damping" => pack.f32s(&params.spring_damping),
             "rest-lengths" => pack.f32s(&params.spring_rest_length),
-            _ => pack.bools(&params.spring_cut),
+            "cuts" => pack.bools(&params.spring_cut),
+            _ => pack.meshes(&saved.meshes),
         };
         write_section(out, name, &pack.into_bytes())?;
     }
@@ -107,7 +113,7 @@ pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
     if !(1..=VERSION).contains(&sections.version) {
         let found = sections.version;
         let sentence = format!(
-            "is in version {found} of the format, and this program reads version {VERSION}: a newer one wrote it"
+            "is in version {found} of the format, and this program reads versions 1 to {VERSION}: a newer one wrote it"
         );
         return Err(Error::new(Code::Unsupported, sentence));
     }
@@ -116,6 +122,7 @@ pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
         program: String::new(),
         scene_name: String::new(),
         scene: String::new(),
+        meshes: Vec::new(),
         fingerprint: 0,
         checkpoint: Checkpoint {
             state: State::new(Vec::new(), Vec::new()),
@@ -124,11 +131,12 @@ pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
         },
         recording: None,
     };
+    let names = if sections.version == 1 { &NAMES[..OF_VERSION_1] } else { &NAMES };
     let mut hash = 0;
     // How often each section came: once is right.
     let mut came = BTreeMap::<&str, u32>::new();
     while let Some((name, content)) = sections.next()? {
-        let Some(known) = NAMES.iter().chain(&OF_RECORDINGS).find(|known| **known == name) else {
+        let Some(known) = names.iter().chain(&OF_RECORDINGS).find(|known| **known == name) else {
             return Err(damaged(&format!("there is no section `{name}` in version {}", sections.version)));
         };
         *came.entry(known).or_default() += 1;
@@ -136,7 +144,7 @@ pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
             .map_err(|error| damaged(&format!("the section `{known}` {}", error.sentence())))?;
     }
     let wanted = |name: &&str| saved.recording.is_none() && OF_RECORDINGS.contains(name);
-    for name in NAMES.iter().chain(&OF_RECORDINGS).filter(|name| !wanted(name)) {
+    for name in names.iter().chain(&OF_RECORDINGS).filter(|name| !wanted(name)) {
         match came.get(name) {
             Some(1) => {}
             None => return Err(damaged(&format!("the section `{name}` is missing"))),
@@ -189,6 +197,7 @@ fn read_section(saved: &mut Saved, hash: &mut u64, name: &str, content: &[u8]) -
         "damping" => params.spring_damping = Arc::new(read.f32s()?),
         "rest-lengths" => params.spring_rest_length = Arc::new(read.f32s()?),
         "cuts" => params.spring_cut = Arc::new(read.bools()?),
+        "meshes" => saved.meshes = read.meshes()?,
         "run" => {
             let plan: Plan = serde_json::from_slice(content)
                 .map_err(|error| Error::new(Code::Unreadable, format!("cannot be understood: {error}")))?;

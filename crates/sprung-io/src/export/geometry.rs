@@ -13,10 +13,14 @@
 //!
 //! Of a body that is shown by its surface, only the points of the surface leave: a reader of meshes may drop vertices that
 //! nothing uses, and then a point cache fits the mesh no more. With springs as lines all of them are used.
+//!
+//! A surface that points carry along leaves as the mesh it came from: all of that mesh's vertices, in its order, so that a
+//! point cache fits the artist's own file. Lines have their ends on points, which then follow in a part of their own.
 
 use std::ops::{Range, RangeInclusive};
+use std::sync::Arc;
 
-use sprung::{Code, Error, Model, Result, SurfaceKind, Vec3};
+use sprung::{Code, Error, Model, Result, Surface, SurfaceKind, SurfaceVertices, Vec3};
 
 use super::{Frame, Options, RunInfo, Springs, Up};
 
@@ -38,12 +42,12 @@ const ROOT_3_4: f32 = 0.866_025_4;
 /// A tube's radius as a share of the median rest length: thick enough to be seen, and two do not touch.
 const TUBE_RADIUS: f32 = 0.03;
 
-/// One thing that is exported: a body, or all springs as tubes.
+/// One thing that is exported: a body; all springs as tubes; or points that only lines end at.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The body's name, or `springs`.
     pub name: String,
-    /// The body, as an index into [`Model::bodies`]; none for tubes.
+    /// The body, as an index into [`Model::bodies`]; none for tubes and for ends of lines.
     pub body: Option<usize>,
     /// Its vertices, as indices into [`Geometry::positions`].
     pub vertices: Range<usize>,
@@ -59,6 +63,11 @@ impl Part {
     /// What it is called where it has to be called something.
     pub fn label(&self) -> &str {
         if self.name.is_empty() { "points" } else { &self.name }
+    }
+
+    /// Whether it is there for lines alone: points of bodies that are themselves exported as meshes which these points carry.
+    pub fn is_line_ends(&self) -> bool {
+        self.body.is_none() && self.triangles.is_empty()
     }
 }
 
@@ -78,8 +87,9 @@ pub struct Geometry {
     lines: Vec<Line>,
     /// The points of the chosen bodies, in ascending order.
     bodies: Vec<Range<usize>>,
-    /// Where the vertices come from, in order; one for each of those bodies.
+    /// Where the vertices come from, in order, but for those of tubes.
     sources: Vec<Source>,
+    model: Arc<Model>,
     /// Springs drawn as tubes: their ends as points of the model, and the radius, m.
     tubes: Option<(Vec<[u32; 2]>, f32)>,
     place: Placement,
@@ -87,13 +97,15 @@ pub struct Geometry {
     velocities: Vec<Vec3>,
 }
 
-/// Where a body's vertices come from.
+/// Where vertices come from.
 #[derive(Clone, Debug)]
 enum Source {
-    /// They are all its points.
+    /// They are all points of a body.
     All(Range<usize>),
     /// They are these points, in ascending order.
     Some(Vec<u32>),
+    /// They are the weighted vertices of this surface of the model.
+    Weighted(usize),
 }
 
 /// Axes and unit of the file.
@@ -130,6 +142,7 @@ impl Geometry {
             lines: Vec::new(),
             bodies: Vec::new(),
             sources: Vec::new(),
+            model: Arc::clone(&run.model),
             tubes: None,
             place: Placement { up: options.up, scale: options.scale as f32 },
             positions: Vec::new(),
@@ -176,9 +189,9 @@ impl Geometry {
         self.parts.iter().map(|part| part.triangles.len()).sum()
     }
 
-    /// For each vertex, the point of the model that it is; none for a corner of a tube.
+    /// For each vertex, the point of the model that it is; none for a corner of a tube, and for a vertex that points carry.
     pub fn points(&self) -> impl Iterator<Item = Option<usize>> + '_ {
-        let of_bodies = self.sources.iter().flat_map(Source::points).map(Some);
+        let of_bodies = self.sources.iter().flat_map(|source| source.points(&self.model));
         of_bodies.chain(std::iter::repeat(None)).take(self.vertex_count())
     }
 
@@ -203,6 +216,10 @@ impl Geometry {
                     }
                     Source::Some(points) => {
                         to.extend(points.iter().map(|&p| self.place.turn(from[p as usize]) * scale));
+                    }
+                    Source::Weighted(surface) => {
+                        let vertices = self.model.surfaces()[*surface].weighted().iter();
+                        to.extend(vertices.map(|vertex| self.place.turn(vertex.of(from)) * scale));
                     }
                 }
             }
@@ -249,15 +266,21 @@ impl Geometry {
 
     fn add_body(&mut self, model: &Model, index: usize, as_points: bool, whole: bool) {
         let body = &model.bodies()[index];
-        let surfaces = || model.surfaces().iter().filter(|surface| surface.body == index && !as_points);
-        let corners = || surfaces().flat_map(|surface| &surface.triangles);
+        let surfaces: Vec<(usize, &Surface)> =
+            model.surfaces().iter().enumerate().filter(|(_, s)| s.body == index && !as_points).collect();
+        let is_weighted = |surface: &Surface| matches!(surface.vertices, SurfaceVertices::Weighted(_));
+        let (weighted, plain): (Vec<_>, Vec<_>) =
+            surfaces.iter().copied().partition(|(_, surface)| is_weighted(surface));
+        let corners = || plain.iter().flat_map(|(_, surface)| &surface.triangles);
+        let has_corners = corners().next().is_some();
         let first = body.points.start as u32;
+        let mut sources = Vec::new();
 
         // The surface's points in ascending order, and where in that list each of the body's is.
         let mut place_of: Vec<u32> = (0..body.points.len() as u32).collect();
-        let source = if whole || corners().next().is_none() {
-            Source::All(body.points.clone())
-        } else {
+        if weighted.is_empty() && (whole || !has_corners) {
+            sources.push(Source::All(body.points.clone()));
+        } else if has_corners {
             let mut is_used = vec![false; body.points.len()];
             corners().flatten().for_each(|&corner| is_used[(corner - first) as usize] = true);
             let mut used = Vec::new();
@@ -265,19 +288,28 @@ impl Geometry {
                 place_of[point] = used.len() as u32;
                 used.push(first + point as u32);
             }
-            Source::Some(used)
-        };
-        let vertices = self.extend(source.points().count());
+            sources.push(Source::Some(used));
+        }
+        let on_points = |triangle: &[u32; 3]| triangle.map(|corner| place_of[(corner - first) as usize]);
+        let mut triangles: Vec<[u32; 3]> = corners().map(on_points).collect();
+        let mut count = sources.iter().map(|source| source.points(model).count()).sum();
+        for (number, surface) in weighted {
+            let before = count as u32;
+            let own = surface.triangles.iter();
+            triangles.extend(own.map(|triangle| triangle.map(|corner| before + corner)));
+            count += surface.weighted().len();
+            sources.push(Source::Weighted(number));
+        }
+        let vertices = self.extend(count);
         self.bodies.push(body.points.clone());
-        self.sources.push(source);
+        self.sources.extend(sources);
+        let is_skin = |(_, surface): &(usize, &Surface)| surface.kind == SurfaceKind::Skin;
         self.parts.push(Part {
             name: body.name.clone(),
             body: Some(index),
             vertices,
-            triangles: corners()
-                .map(|triangle| triangle.map(|corner| place_of[(corner - first) as usize]))
-                .collect(),
-            is_closed: surfaces().count() > 0 && surfaces().all(|surface| surface.kind == SurfaceKind::Skin),
+            triangles,
+            is_closed: !surfaces.is_empty() && surfaces.iter().all(is_skin),
             colour: rgb(BODY_COLOURS[index % BODY_COLOURS.len()]),
         });
     }
@@ -302,13 +334,50 @@ impl Geometry {
     }
 
     fn add_lines(&mut self, run: &RunInfo) {
-        // Each body's vertices are all its points then.
+        let springs: Vec<(usize, [u32; 2])> = self.springs(run).collect();
+        let mut has_lines = vec![false; self.bodies.len()];
+        let ends = springs.iter().flat_map(|(_, ends)| ends);
+        ends.filter_map(|&end| self.body_of(end as usize)).for_each(|body| has_lines[body] = true);
+
+        // A body's vertices are all its points, or vertices that these carry: then the points follow after all bodies.
+        let start = self.vertex_count();
+        let mut end = start;
+        let mut first_of = vec![0; self.bodies.len()];
+        let mut sources = Vec::new();
+        for (body, points) in self.bodies.iter().enumerate() {
+            first_of[body] = self.parts[body].vertices.start;
+            if has_lines[body] && self.is_carried(body) {
+                first_of[body] = end;
+                end += points.len();
+                sources.push(Source::All(points.clone()));
+            }
+        }
         let vertex_of = |point: u32| {
             let body = self.body_of(point as usize).unwrap_or(0);
-            (point as usize - self.bodies[body].start + self.parts[body].vertices.start) as u32
+            (point as usize - self.bodies[body].start + first_of[body]) as u32
         };
         self.lines =
-            self.springs(run).map(|(spring, ends)| Line { spring, ends: ends.map(vertex_of) }).collect();
+            springs.into_iter().map(|(spring, ends)| Line { spring, ends: ends.map(vertex_of) }).collect();
+        if end > start {
+            self.sources.extend(sources);
+            self.parts.push(Part {
+                name: "springs".into(),
+                body: None,
+                vertices: start..end,
+                triangles: Vec::new(),
+                is_closed: false,
+                colour: rgb(SPRING_COLOUR),
+            });
+        }
+    }
+
+    /// Whether a chosen body is exported as vertices that its points carry.
+    fn is_carried(&self, body: usize) -> bool {
+        let mut weighted = self.sources.iter().filter_map(|source| match source {
+            Source::Weighted(surface) => Some(self.model.surfaces()[*surface].body),
+            _ => None,
+        });
+        weighted.any(|index| Some(index) == self.parts[body].body)
     }
 
     fn add_tubes(&mut self, run: &RunInfo) {
@@ -328,10 +397,14 @@ impl Geometry {
 }
 
 impl Source {
-    fn points(&self) -> Box<dyn Iterator<Item = usize> + '_> {
+    /// For each vertex the point that it is, if it is one.
+    fn points<'a>(&'a self, model: &Model) -> Box<dyn Iterator<Item = Option<usize>> + 'a> {
         match self {
-            Self::All(points) => Box::new(points.clone()),
-            Self::Some(points) => Box::new(points.iter().map(|&point| point as usize)),
+            Self::All(points) => Box::new(points.clone().map(Some)),
+            Self::Some(points) => Box::new(points.iter().map(|&point| Some(point as usize))),
+            Self::Weighted(surface) => {
+                Box::new(std::iter::repeat_n(None, model.surfaces()[*surface].weighted().len()))
+            }
         }
     }
 }

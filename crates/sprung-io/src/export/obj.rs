@@ -5,6 +5,7 @@ use std::path::Path;
 
 use sprung::Result;
 
+use super::geometry::Part;
 use super::sequence::Sequence;
 use super::{
     Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Up,
@@ -122,7 +123,10 @@ fn write_geometry(out: &mut impl Write, geometry: &Geometry) -> io::Result<()> {
         }
     }
     if !geometry.lines().is_empty() {
-        out.write_all(b"o springs\n")?;
+        // Points that only lines end at have begun that object.
+        if !geometry.parts().last().is_some_and(Part::is_line_ends) {
+            out.write_all(b"o springs\n")?;
+        }
         for line in geometry.lines() {
             out.write_all(b"l")?;
             for end in line.ends {

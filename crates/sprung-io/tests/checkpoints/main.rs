@@ -1,15 +1,19 @@
-//! Checkpoint files: version 1 for ever, whatever is cut or changed is noticed and named, and hostile ones get a sentence.
+//! Checkpoint files: every version for ever, whatever is cut or changed is noticed and named, and hostile ones get a sentence.
 
 mod damage;
 mod golden;
 mod keeping;
 
+use std::path::Path;
 use std::sync::Arc;
 
+use sprung::build::Mesh;
+use sprung::build::mesh::{Faces, MeshGroup};
 use sprung::energy::LedgerSums;
 use sprung::scene::Scene;
-use sprung::{Change, Grab, Plane, Result, Simulation, Vec3};
+use sprung::{Change, DVec3, Grab, Plane, Result, Simulation, Vec3};
 use sprung_io::checkpoint::{Plan, Recording, Saved};
+use sprung_io::import::load_meshes;
 use sprung_io::{FileMark, Mark, Options};
 
 /// Three points and two springs, of which everything that a checkpoint can hold has been changed.
@@ -89,6 +93,33 @@ fn small() -> Saved {
     saved
 }
 
+/// The same with a fourth point and a triangle of net made from a mesh, whose file nobody will find.
+fn netted() -> Saved {
+    let mut saved = small();
+    let text = format!(
+        "{}\n[[body]]\nname = \"net\"\nmesh = \"gone/net.ply\"\nbody_mass = 0.25\npins = [{{ group = \"rail\" }}]\n\
+         net = {{ stiffness = 10.0 }}\n",
+        saved.scene
+    );
+    let mut scene = Scene::parse(&text, "netted.toml").expect("a scene");
+    let mut faces = Faces::default();
+    faces.push(&[0, 1, 2]);
+    let mesh = Mesh {
+        positions: vec![DVec3::new(0.0, 3.0, 0.1), DVec3::new(1.0, 3.0, 0.0), DVec3::new(0.5, 2.0, 0.0)],
+        faces,
+        groups: vec![MeshGroup { name: "rail".into(), vertices: vec![0] }],
+        colours: vec![[1.0, 0.5, 0.25]; 3],
+        warnings: vec!["has a texture, which was left out".into()],
+        ..Mesh::default()
+    };
+    scene.load_meshes(&mut |_| Ok(mesh.clone())).expect("a mesh");
+    let mut simulation = scene.simulation().expect("it can be built");
+    simulation.steps(5).expect("it is stable");
+    let recording = saved.recording.take();
+    saved = Saved { program: saved.program, recording, ..Saved::new("netted", &scene, &mut simulation) };
+    saved
+}
+
 fn bytes_of(saved: &Saved) -> Vec<u8> {
     let mut bytes = Vec::new();
     saved.write_to(&mut bytes).expect("memory takes everything");
@@ -117,6 +148,42 @@ fn what_is_written_is_read_and_goes_on_to_the_same_bits() {
     assert_eq!(a.state(), b.state());
     assert_eq!(a.energy(), b.energy());
     assert!(a.energy().sums.integrator_error != 0.0, "the ledger is kept");
+}
+
+#[test]
+fn meshes_are_in_it() {
+    let saved = netted();
+    assert_eq!(saved.meshes[0].0, "gone/net.ply");
+    let again = read(&bytes_of(&saved)).expect("it is whole");
+    assert_eq!(again, saved);
+    let [mut a, mut b] = [&saved, &again].map(|saved| resumed(saved).expect("it goes on"));
+    for run in [&mut a, &mut b] {
+        run.steps(25).expect("it is stable");
+    }
+    assert_eq!(a.state(), b.state());
+    let without = Saved { meshes: Vec::new(), ..saved };
+    let error = resumed(&without).expect_err("there is no mesh");
+    assert_eq!(error.to_string(), "the mesh \"gone/net.ply\" is not there");
+}
+
+/// The examples' scenes, saved on their way and gone on with where no mesh file is.
+#[test]
+fn examples_with_meshes_go_on_without_their_files() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    for name in ["towel", "pebble", "hammock"] {
+        let path = folder.join(name).with_extension("toml");
+        let text = std::fs::read_to_string(&path).expect("it is there");
+        let mut scene = Scene::parse(&text, name).expect("a scene");
+        load_meshes(&mut scene, Some(&path)).expect("its mesh is there");
+        let mut run = scene.simulation().expect("it can be built");
+        run.steps(9).expect("it is stable");
+        let saved = Saved::new(name, &scene, &mut run);
+        let mut again = resumed(&read(&bytes_of(&saved)).expect("it is whole")).expect("it goes on");
+        assert_eq!(again.model().surfaces(), run.model().surfaces());
+        run.steps(31).expect("it is stable");
+        again.steps(31).expect("it is stable");
+        assert_eq!(again.state(), run.state(), "{name}");
+    }
 }
 
 #[test]

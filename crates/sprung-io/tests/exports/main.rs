@@ -1,6 +1,7 @@
 //! Exports read back, and what is left behind when they end early.
 
 mod caches;
+mod carried;
 mod common;
 #[cfg(target_os = "linux")]
 mod full_disk;

@@ -16,7 +16,7 @@ use super::choices::Numbers;
 use super::suggest::shortened;
 use super::types::{Body, Exception, Scene};
 use crate::build::mesh::{ClothMaterial, Mesh, MeshBody, NetMaterial, SoftMaterial, cloth, net, soft_body};
-use crate::error::{Error, Result};
+use crate::error::{Code, Error, Result};
 
 /// A mesh file, by its path from the folder of the scene file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -387,6 +387,37 @@ impl Scene {
     /// Those of `read`; a mesh of which the body cannot be made, and all that [`parse`](Self::parse) could not yet check: points
     /// and groups by name or number, lists for each point.
     pub fn load_meshes(&mut self, read: &mut dyn FnMut(&str) -> Result<Mesh>) -> Result<Vec<String>> {
+        self.load_shared(&mut |file| read(file).map(Arc::new))
+    }
+
+    /// The meshes that were read, each with the name of its file as the scene has it, once.
+    pub fn meshes(&self) -> Vec<(String, Arc<Mesh>)> {
+        let mut meshes: Vec<(String, Arc<Mesh>)> = Vec::new();
+        for body in &self.bodies {
+            if let (Some(file), Some(read)) = (&body.mesh, &body.loaded.0)
+                && meshes.iter().all(|(name, _)| *name != file.file)
+            {
+                meshes.push((file.file.clone(), Arc::clone(&read.mesh)));
+            }
+        }
+        meshes
+    }
+
+    /// As [`load_meshes`](Self::load_meshes), with meshes that were read before: those that [`meshes`](Self::meshes) gave.
+    ///
+    /// # Errors
+    /// [`Code::NotFound`] for one that is not among them, and as [`load_meshes`](Self::load_meshes).
+    pub fn take_meshes(&mut self, meshes: &[(String, Arc<Mesh>)]) -> Result<()> {
+        let find = |file: &str| {
+            let found = meshes.iter().find(|(name, _)| name == file);
+            found.map(|(_, mesh)| Arc::clone(mesh)).ok_or_else(|| {
+                Error::new(Code::NotFound, format!("the mesh \"{}\" is not there", shortened(file)))
+            })
+        };
+        self.load_shared(&mut |file| find(file)).map(|_| ())
+    }
+
+    fn load_shared(&mut self, read: &mut dyn FnMut(&str) -> Result<Arc<Mesh>>) -> Result<Vec<String>> {
         let mut meshes: Vec<(String, Arc<Mesh>)> = Vec::new();
         let mut warnings = Vec::new();
         let origin = self.origin.clone();
@@ -395,7 +426,7 @@ impl Scene {
             let mesh = match meshes.iter().find(|(name, _)| *name == file) {
                 Some((_, mesh)) => Arc::clone(mesh),
                 None => {
-                    let mesh = Arc::new(read(&file)?);
+                    let mesh = read(&file)?;
                     meshes.push((file.clone(), Arc::clone(&mesh)));
                     mesh
                 }

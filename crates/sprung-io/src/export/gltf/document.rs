@@ -87,9 +87,9 @@ impl Layout {
     }
 }
 
-/// Parts that have vertices: glTF knows no empty accessors.
+/// Parts that have vertices, as glTF knows no empty accessors, and are more than what lines end at.
 fn drawn_parts(geometry: &Geometry) -> impl Iterator<Item = &Part> {
-    geometry.parts().iter().filter(|part| !part.vertices.is_empty())
+    geometry.parts().iter().filter(|part| !part.vertices.is_empty() && !part.is_line_ends())
 }
 
 /// A run's geometry as glTF.

@@ -47,7 +47,9 @@ impl Scene {
         let mut builder = Builder { sources: Vec::new(), lengths: Vec::new() };
         let mut children = Vec::new();
         let points: Vec<Option<usize>> = geometry.points().collect();
-        for part in geometry.parts().iter().filter(|part| !part.vertices.is_empty()) {
+        // Curves have points of their own, and need no others to end at.
+        let shown = geometry.parts().iter().filter(|part| !part.vertices.is_empty() && !part.is_line_ends());
+        for part in shown {
             let name = identifier(part.label(), &names);
             names.push(name.clone());
             let points = points[part.vertices.clone()].iter().copied().collect::<Option<Vec<_>>>();
@@ -128,7 +130,7 @@ impl Builder {
     }
 
     /// A body: a mesh if it has triangles, points otherwise. `points` are the numbers of its points in the whole scene, if
-    /// it is not made of tubes.
+    /// its vertices are points.
     fn part(&mut self, part: &Part, name: String, points: Option<Vec<usize>>, radius: f32) -> Prim {
         let (range, count) = (&part.vertices, part.vertices.len());
         let is_mesh = !part.triangles.is_empty();
