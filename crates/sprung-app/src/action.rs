@@ -49,6 +49,8 @@ pub enum Action {
     Open,
     /// Saves all parameters as a scene file.
     Save,
+    /// Saves the running simulation as a checkpoint.
+    Checkpoint,
     /// Saves the picture.
     Picture,
     /// Begins or ends an animation.
@@ -193,13 +195,20 @@ pub static ACTIONS: &[ActionInfo] = &[
         "Nothing but the scene, or everything again."
     ),
     action!(Action::Theme, [key(Key::T)], icon::THEME, "Theme", "Light or dark."),
-    action!(Action::Open, [command(Key::O)], icon::FOLDER, "Open…", "Opens a scene file."),
+    action!(Action::Open, [command(Key::O)], icon::FOLDER, "Open…", "Opens a scene file or a checkpoint."),
     action!(
         Action::Save,
         [command(Key::S)],
         icon::SAVE,
         "Save…",
         "Saves the scene with all parameters as they are now."
+    ),
+    action!(
+        Action::Checkpoint,
+        [KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S)],
+        icon::SAVE,
+        "Checkpoint…",
+        "Saves the running simulation, to go on with it later."
     ),
     action!(Action::Picture, [command(Key::P)], icon::CAMERA, "Picture…", "Saves what is seen as a picture."),
     action!(Action::Record, [command(Key::R)], icon::FILM, "Film…", "Begins or ends a film of what is seen."),

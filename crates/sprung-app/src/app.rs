@@ -146,7 +146,7 @@ impl App {
                 let theme = &mut state.appearance.theme;
                 *theme = if *theme == Theme::Light { Theme::Dark } else { Theme::Light };
             }
-            Action::Open | Action::Save => self.cards.file(action, state),
+            Action::Open | Action::Save | Action::Checkpoint => self.cards.file(action, state),
             Action::Picture | Action::Record => self.view.save(action, state),
             Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Scene(number) => {

@@ -9,14 +9,40 @@ use std::task::{Context, Poll, Wake, Waker};
 
 use serde::{Deserialize, Serialize};
 use sprung::scene::{BUILTIN, MAX_BYTES, Scene};
-use sprung::{Error, Result};
-use sprung_driver::{Report, Source};
+use sprung::{Checkpoint, Code, Error, Result};
+use sprung_driver::{Beginning, Kept, Options, Report, Running, Source};
+use sprung_io::checkpoint::{self, Keeper, Resumed, Saved, Stored};
 use sprung_io::files::PartialFile;
 
 use crate::media::file_stem;
 
 /// The ending of scene files.
 pub const ENDING: &str = "toml";
+
+/// What can be opened: scenes and checkpoints.
+pub const OPENED: [&str; 2] = [ENDING, checkpoint::ENDING];
+
+/// What was found where something is to be opened.
+#[derive(Clone, Debug)]
+pub enum Found {
+    /// A scene.
+    Scene(Source),
+    /// A checkpoint, which is not read yet: it may be large.
+    Checkpoint(Kept),
+}
+
+impl Found {
+    /// It as a driver begins with it.
+    ///
+    /// # Errors
+    /// If it is a checkpoint that cannot be gone on with.
+    pub fn begin(self, options: &Options) -> Result<Beginning> {
+        match self {
+            Self::Scene(source) => Ok(source.into()),
+            Self::Checkpoint(kept) => Ok((kept.bring)(options)?.into()),
+        }
+    }
+}
 
 /// Where a scene came from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,16 +68,16 @@ impl Origin {
         if is_builtin { Self::Builtin(name.to_owned()) } else { Self::Other(name.to_owned()) }
     }
 
-    /// The scene that lies there.
+    /// The scene or the checkpoint that lies there.
     ///
     /// # Errors
     /// If there is none any more, or it cannot be read.
-    pub fn read(&self) -> Result<Source> {
+    pub fn find(&self) -> Result<Found> {
         match self {
             Self::Builtin(name) | Self::Other(name) => {
-                Ok(Source { name: name.clone(), scene: Scene::builtin(name)? })
+                Ok(Found::Scene(Source { name: name.clone(), scene: Scene::builtin(name)? }))
             }
-            Self::File(path) => read_scene(path).map_err(|refused| refused.error),
+            Self::File(path) => find(path).map_err(|refused| refused.error),
         }
     }
 }
@@ -86,6 +112,7 @@ impl Files {
     /// A path to save the open scene to: its own file, or a name for one that is not there yet.
     pub fn path_to_save(&self) -> PathBuf {
         match &self.origin {
+            Origin::File(path) if checkpoint::is_name(path) => path.with_extension(ENDING),
             Origin::File(path) => path.clone(),
             Origin::Builtin(name) | Origin::Other(name) => {
                 PathBuf::from(format!("my-{}.{ENDING}", file_stem(name)))
@@ -101,6 +128,52 @@ pub struct Refused {
     pub error: Error,
     /// What the file says, so that the line at fault can be shown.
     pub text: Option<String>,
+}
+
+/// What lies there to be opened, by the ending of its name. Scenes are read.
+///
+/// # Errors
+/// As [`read_scene`]; what is wrong with a checkpoint comes out when it is wanted.
+pub fn find(path: &Path) -> Result<Found, Refused> {
+    if checkpoint::is_name(path) {
+        Ok(Found::Checkpoint(kept(path)))
+    } else {
+        read_scene(path).map(Found::Scene)
+    }
+}
+
+/// The checkpoint in a file, to be read by whoever wants it.
+fn kept(path: &Path) -> Kept {
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let file = path.display().to_string();
+    let path = path.to_owned();
+    let read = move |options: &Options| {
+        let stored = Stored::open(&path)?;
+        options.check_memory(stored.memory(), "the checkpoint")?;
+        stored.read()
+    };
+    Kept { name, bring: Arc::new(move |options| running(read(options), &file, options)) }
+}
+
+/// What goes on with a checkpoint that was read from this file.
+fn running(saved: Result<Saved>, file: &str, options: &Options) -> Result<Running> {
+    let running = saved.and_then(|saved| {
+        let Resumed { scene, params, simulation } =
+            saved.resume(&|needed, what| options.check_memory(needed, what))?;
+        Ok(Running { name: saved.scene_name, scene, params: Arc::new(params), simulation })
+    });
+    running.map_err(|error| error.in_file(file))
+}
+
+/// Writes a checkpoint of the open scene, and gives its size.
+///
+/// # Errors
+/// As [`write`], and if the file belongs to a run that is still going.
+pub fn write_checkpoint(path: &Path, report: &Report, checkpoint: &Checkpoint) -> Result<u64> {
+    checkpoint::check_name(path)?;
+    let opened = &report.opened;
+    let saved = Saved::of(&opened.name, &opened.scene, &opened.model, checkpoint.clone());
+    Keeper::begin(path)?.write(&saved)
 }
 
 /// Reads a scene file.
@@ -133,6 +206,19 @@ pub fn parse_scene(bytes: &[u8], file: &str) -> Result<Source, Refused> {
         Ok(scene) => Ok(Source { name: name.into_owned(), scene }),
         Err(error) => Err(Refused { error, text: String::from_utf8(bytes.to_vec()).ok() }),
     }
+}
+
+/// Writes the open scene with all parameters as they are now, and gives the file's size.
+///
+/// # Errors
+/// As [`scene_text`] and [`write`], and if the name is that of a checkpoint.
+pub fn write_scene(path: &Path, report: &Report) -> Result<u64> {
+    if checkpoint::is_name(path) {
+        let error =
+            Error::new(Code::Unsupported, "is a name for a checkpoint, and a scene's ends with .toml");
+        return Err(error.in_file(path.display().to_string()));
+    }
+    write(path, scene_text(report)?.as_bytes())
 }
 
 /// The open scene with all parameters as they are now, as the text of a scene file that `sprung run` takes.
@@ -204,25 +290,32 @@ impl Wake for Repaint {
     }
 }
 
-/// The scene in the first of the files that were dropped onto the window, if any were.
-pub fn dropped(context: &egui::Context) -> Option<Result<(Source, Origin), Refused>> {
+/// The scene or checkpoint in the first of the files that were dropped onto the window, if any were.
+pub fn dropped(context: &egui::Context) -> Option<Result<(Found, Origin), Refused>> {
     let file = context.input(|input| input.raw.dropped_files.first().cloned())?;
     let path = file.path().to_owned();
     let name = path.display().to_string();
     // On the desktop a dropped file has a path, and so a limit to what is read of it; else it comes as bytes.
     if path.is_absolute() {
-        return Some(read_scene(&path).map(|source| (source, Origin::File(path))));
+        return Some(find(&path).map(|found| (found, Origin::File(path))));
     }
-    let source = match file.bytes() {
-        Ok(bytes) => parse_scene(&bytes, &name),
+    let found = match file.bytes() {
+        Ok(bytes) if checkpoint::is_name(&path) => {
+            let file = name.clone();
+            let read = move || Saved::read_from(&mut &bytes[..], bytes.len() as u64);
+            let bring = Arc::new(move |options: &Options| running(read(), &file, options));
+            Ok(Found::Checkpoint(Kept { name: name.clone(), bring }))
+        }
+        Ok(bytes) => parse_scene(&bytes, &name).map(Found::Scene),
         Err(reason) => {
-            let error = Error::new(sprung::Code::Unreadable, format!("cannot be read: {reason}"));
+            let error = Error::new(Code::Unreadable, format!("cannot be read: {reason}"));
             Err(Refused { error: error.in_file(name), text: None })
         }
     };
-    Some(source.map(|source| {
-        let origin = Origin::Other(source.name.clone());
-        (source, origin)
+    Some(found.map(|found| {
+        let (Found::Scene(Source { name, .. }) | Found::Checkpoint(Kept { name, .. })) = &found;
+        let origin = Origin::Other(name.clone());
+        (found, origin)
     }))
 }
 
@@ -250,6 +343,9 @@ mod tests {
         let Origin::File(path) = Origin::file(Path::new("some/where.toml")) else { panic!("it is a file") };
         assert!(path.is_absolute() && path.ends_with("some/where.toml"), "{}", path.display());
         assert_eq!(Files::new(Origin::file(&path)).path_to_save(), path);
+        // A scene is not suggested to be written over the checkpoint that it came from.
+        let from = Files::new(Origin::file(Path::new("/some/where.sprung")));
+        assert_eq!(from.path_to_save().file_name(), Some("where.toml".as_ref()));
         let handed_in = Files::new(Origin::Other("a/b".to_owned()));
         assert_eq!(handed_in.path_to_save(), Path::new("my-a-b.toml"));
     }

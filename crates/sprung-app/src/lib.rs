@@ -27,5 +27,5 @@ pub use card::GESTURES;
 pub use media::{Film, FilmClock, Filming, PictureSize, SaveRequest};
 pub use native::{Options, run};
 pub use panel::PLANETS;
-pub use sprung_driver::Source;
+pub use sprung_driver::{Beginning, Running, Source};
 pub use state::{AppState, Overlays, Pick, Shown, Tool};

@@ -7,7 +7,7 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetupCreateNew, wgpu};
 use egui::{IconData, ViewportBuilder};
 use sprung::scene::Scene;
 use sprung::{Code, Error, Inline, Result, Workers};
-use sprung_driver::{Driver, Handle, Source};
+use sprung_driver::{Beginning, Driver, Handle, Source};
 
 use crate::app::App;
 use crate::files::Origin;
@@ -28,11 +28,11 @@ const LEAST_SIZE: [f32; 2] = [480.0, 360.0];
 /// What the window begins with.
 #[derive(Clone)]
 pub struct Options {
-    /// The scene; the last one if none is given, and the jelly at the very first start.
-    pub source: Option<Source>,
-    /// The file that this scene was read from, if it was: the next start finds it there, and saving suggests it.
+    /// The scene or a simulation that is under way; the last one if none is given, and the jelly at the very first start.
+    pub beginning: Option<Beginning>,
+    /// The file that this was read from, if it was: the next start finds it there, and saving suggests it.
     pub path: Option<PathBuf>,
-    /// Scenes that need more memory than this are refused, bytes. `None`: no limit.
+    /// Scenes and checkpoints that need more memory than this are refused, bytes. `None`: no limit.
     pub memory_limit: Option<u64>,
     /// Threads for the steps, besides the one that takes them.
     pub workers: Arc<dyn Workers>,
@@ -40,7 +40,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { source: None, path: None, memory_limit: None, workers: Arc::new(Inline) }
+        Self { beginning: None, path: None, memory_limit: None, workers: Arc::new(Inline) }
     }
 }
 
@@ -127,11 +127,11 @@ fn rank(adapter: &wgpu::AdapterInfo) -> u32 {
 
 fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App> {
     let settings = Settings::load(context.storage);
-    let Options { source, path, memory_limit, workers } = options;
-    let (source, origin, refused) = first_source(source, path.as_deref(), &settings)?;
-    let repaint = context.egui_ctx.clone();
+    let Options { beginning, path, memory_limit, workers } = options;
     let limits = sprung_driver::Options { memory_limit, workers, ..Default::default() };
-    let driver = Driver::with(source, limits)?;
+    let (beginning, origin, refused) = first(beginning, path.as_deref(), &settings, &limits)?;
+    let repaint = context.egui_ctx.clone();
+    let driver = Driver::with(beginning, limits)?;
     let driver = Handle::thread(driver, Box::new(move || repaint.request_repaint()))?;
     let mut app = App::new(driver, context);
     app.state_mut().files.origin = origin;
@@ -141,25 +141,30 @@ fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App
     Ok(app)
 }
 
-/// The scene to begin with; and why it is not the last one, where that is gone.
-fn first_source(
-    given: Option<Source>,
+/// What to begin with; and why it is not what was open last, where that is gone.
+fn first(
+    given: Option<Beginning>,
     path: Option<&Path>,
     settings: &Settings,
-) -> Result<(Source, Origin, Option<Error>)> {
-    if let Some(source) = given {
-        let origin = path.map_or_else(|| Origin::of(&source.name, &source.scene), Origin::file);
-        return Ok((source, origin, None));
+    limits: &sprung_driver::Options,
+) -> Result<(Beginning, Origin, Option<Error>)> {
+    if let Some(beginning) = given {
+        let origin = match (path, &beginning) {
+            (Some(path), _) => Origin::file(path),
+            (None, Beginning::Scene(source)) => Origin::of(&source.name, &source.scene),
+            (None, Beginning::Running(running)) => Origin::Other(running.name.clone()),
+        };
+        return Ok((beginning, origin, None));
     }
     let mut refused = None;
     if let Some(origin) = &settings.scene {
-        match origin.read() {
-            Ok(source) => return Ok((source, origin.clone(), None)),
+        match origin.find().and_then(|found| found.begin(limits)) {
+            Ok(beginning) => return Ok((beginning, origin.clone(), None)),
             Err(error) => refused = Some(error),
         }
     }
     let source = Source { name: FIRST_SCENE.to_owned(), scene: Scene::builtin(FIRST_SCENE)? };
-    Ok((source, Origin::Builtin(FIRST_SCENE.to_owned()), refused))
+    Ok((source.into(), Origin::Builtin(FIRST_SCENE.to_owned()), refused))
 }
 
 /// One line that says what is missing and what to do.
@@ -275,17 +280,40 @@ mod tests {
     fn a_scene_that_is_gone_is_said_and_the_jelly_opens() {
         let settings =
             Settings { scene: Some(Origin::File("nowhere/at all.toml".into())), ..Settings::default() };
-        let (source, origin, refused) = first_source(None, None, &settings).expect("the jelly is built in");
+        let (beginning, origin, refused) =
+            first(None, None, &settings, &Default::default()).expect("the jelly is built in");
+        let Beginning::Scene(source) = beginning else { panic!("it is a scene") };
         assert_eq!((source.name.as_str(), origin), ("jelly", Origin::Builtin("jelly".to_owned())));
         assert_eq!(refused.map(|error| error.code()), Some(Code::Unreadable));
     }
 
     #[test]
+    fn a_checkpoint_that_was_open_last_is_gone_on_with() {
+        let folder = tempfile::tempdir().expect("there is a disk");
+        let path = folder.path().join("mine.sprung");
+        let scene = Scene::builtin("chain").expect("it is built in");
+        let mut simulation = scene.simulation().expect("it can be built");
+        simulation.steps(9).expect("it is stable");
+        let saved = sprung_io::checkpoint::Saved::new("chain", &scene, &mut simulation);
+        sprung_io::checkpoint::Keeper::begin(&path)
+            .and_then(|mut it| it.write(&saved))
+            .expect("there is room");
+        let settings = Settings { scene: Some(Origin::File(path.clone())), ..Settings::default() };
+        let begin = || first(None, None, &settings, &Default::default()).expect("something opens");
+        let (Beginning::Running(running), origin, None) = begin() else { panic!("it is under way") };
+        assert_eq!((running.simulation.now().0, origin), (9, Origin::File(path.clone())));
+        std::fs::write(&path, "something else").expect("it is ours");
+        let (Beginning::Scene(source), _, Some(error)) = begin() else { panic!("it is no checkpoint") };
+        assert_eq!((source.name.as_str(), error.code()), (FIRST_SCENE, Code::Unreadable));
+    }
+
+    #[test]
     fn a_scene_that_was_handed_in_is_found_where_it_came_from() {
-        let given = || Source { name: "mine".to_owned(), scene: Scene::builtin("chain").expect("built in") };
+        let scene = || Scene::builtin("chain").expect("built in");
+        let given = || Beginning::from(Source { name: "mine".to_owned(), scene: scene() });
         let path = std::path::absolute("mine.toml").expect("there is a current folder");
         let origin = |path: Option<&Path>| {
-            first_source(Some(given()), path, &Settings::default()).expect("it is there").1
+            first(Some(given()), path, &Settings::default(), &Default::default()).expect("it is there").1
         };
         assert_eq!(origin(Some(Path::new("mine.toml"))), Origin::File(path));
         assert_eq!(origin(None), Origin::Other("mine".to_owned()));

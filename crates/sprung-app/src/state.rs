@@ -12,7 +12,7 @@ use sprung_render::turntable::Turntable;
 
 use crate::action::Action;
 use crate::explain::Stage;
-use crate::files::{Files, Origin, Refused};
+use crate::files::{Files, Found, Origin, Refused};
 use crate::media::{Filming, SaveRequest};
 use crate::plots::PlotKind;
 
@@ -149,10 +149,14 @@ impl AppState {
         }
     }
 
-    /// Opens what was read, or says why it cannot be.
-    pub fn open_or_refuse(&mut self, read: Result<(Source, Origin), Refused>) {
-        match read {
-            Ok((source, origin)) => self.open(source, origin),
+    /// Opens what was found, or says why it cannot be.
+    pub fn open_or_refuse(&mut self, found: Result<(Found, Origin), Refused>) {
+        match found {
+            Ok((Found::Scene(source), origin)) => self.open(source, origin),
+            Ok((Found::Checkpoint(kept), origin)) => {
+                self.files.ask(origin);
+                self.send(Command::GoOn(kept));
+            }
             Err(refused) => self.queue(refused),
         }
     }

@@ -121,6 +121,7 @@ fn every_key_does_something_and_never_panics() {
                 Action::Record,
                 Action::Open,
                 Action::Save,
+                Action::Checkpoint,
                 Action::ResetView,
                 Action::Quit,
             ];

@@ -69,6 +69,11 @@ const CARDS: &[Shot] = &[
     Shot::dark("card-help", "chain", |window| act(window, Action::Help)),
     Shot::light("card-open", "spring", |window| act(window, Action::Open)),
     Shot::dark("card-save", "jelly", |window| act(window, Action::Save)),
+    Shot::light("card-checkpoint", "jelly", |window| {
+        play_to(window, 1.6);
+        act(window, Action::Checkpoint);
+    }),
+    Shot::light("card-checkpoint-bad", "chain", |window| drop_file(window, "half.sprung", "\u{89}not one")),
     Shot::light("card-replace", "chain", |window| {
         act(window, Action::Save);
         // Any file that is there, and no farther than the question.

@@ -78,7 +78,7 @@ pub struct SceneArgs {
 /// Arguments of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
-    /// A built-in scene's name, or a scene file [default: the scene of last time]
+    /// A built-in scene's name, a scene file, or a checkpoint to go on with [default: the scene of last time]
     pub scene: Option<String>,
     /// Change a value of the scene, such as dt=0.005, gravity=[0,-1.62,0] or body.jelly.springs.stiffness=500
     #[arg(long, value_name = "KEY=VALUE", requires = "scene")]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use sprung::scene::{self, Scene};
 use sprung::{Code, Error, Inline, Result, Simulation, Workers};
-use sprung_io::checkpoint::{self, Saved, Stored};
+use sprung_io::checkpoint::{self, Resumed, Saved, Stored};
 use sprung_io::{files, import};
 
 use crate::args::SceneArgs;
@@ -35,7 +35,7 @@ pub fn scene_and_file(args: &SceneArgs) -> Result<(String, Scene, Option<PathBuf
 
 /// Whether this names a checkpoint.
 pub fn is_checkpoint(text: &str) -> bool {
-    Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case(checkpoint::ENDING))
+    checkpoint::is_name(Path::new(text))
 }
 
 /// A simulation, its scene, and the name to call it by.
@@ -52,13 +52,19 @@ pub fn begun(args: &SceneArgs, threads: Option<usize>) -> Result<Begun> {
         let simulation = simulation(&scene, threads)?;
         return Ok(Begun { name, scene, simulation });
     }
+    let (path, saved) = saved(args)?;
+    begun_from(path, &saved, threads)
+}
+
+/// The checkpoint that is named instead of a scene.
+pub fn saved(args: &SceneArgs) -> Result<(&Path, Saved)> {
     if let Some(assignment) = args.set.first() {
         let error =
             Error::new(Code::Conflict, "changes a scene, and a checkpoint holds one that is under way");
         return Err(error.in_file(format!("--set {assignment}")).with_fix("leave it out"));
     }
     let path = Path::new(&args.scene);
-    begun_from(path, &read(path, &Stored::open(path)?)?, threads)
+    Ok((path, read(path, &Stored::open(path)?)?))
 }
 
 /// Reads a checkpoint, after asking whether there is memory for it.
@@ -68,31 +74,26 @@ pub fn read(path: &Path, stored: &Stored) -> Result<Saved> {
     stored.read()
 }
 
-/// The simulation that a checkpoint holds.
+/// The simulation that a checkpoint holds, with its scene.
+pub fn resumed(path: &Path, saved: &Saved) -> Result<Resumed> {
+    saved.resume(&memory::check).map_err(|error| error.in_file(path.display().to_string()))
+}
+
+/// The same, without a history, on so many threads.
 pub fn begun_from(path: &Path, saved: &Saved, threads: Option<usize>) -> Result<Begun> {
-    let begun = || -> Result<Begun> {
-        let scene = saved.scene()?;
-        memory::check(scene.estimated_bytes(), "the scene in it")?;
-        let (model, ..) = scene.build()?;
-        let mut simulation = saved.simulation(model)?;
-        simulation.keep_history(0);
-        simulation.set_workers(workers(threads)?);
-        Ok(Begun { name: saved.scene_name.clone(), scene, simulation })
-    };
-    begun().map_err(|error| {
-        let place = error.place();
-        let inner = place.field.as_ref().map(|field| format!("{field}: ")).unwrap_or_default();
-        let sentence = format!("cannot be gone on with: {inner}{}", error.sentence());
-        let outer = Error::new(error.code(), sentence).in_file(path.display().to_string());
-        error.fix().map(str::to_owned).into_iter().fold(outer, Error::with_fix)
-    })
+    let Resumed { scene, mut simulation, .. } = resumed(path, saved)?;
+    simulation.keep_history(0);
+    simulation.set_workers(workers(threads)?);
+    Ok(Begun { name: saved.scene_name.clone(), scene, simulation })
 }
 
 fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
     let path = Path::new(text);
     if is_checkpoint(text) {
         let error = Error::new(Code::Unsupported, "is a checkpoint, and a scene is wanted here");
-        return Err(error.in_file(text).with_fix("`sprung run` and `sprung show` take checkpoints"));
+        return Err(error
+            .in_file(text)
+            .with_fix("`sprung run`, `sprung show` and `sprung view` take checkpoints"));
     }
     let looks_like_a_file = path.extension().is_some() || text.contains(['/', '\\']) || path.exists();
     match Scene::builtin(text) {

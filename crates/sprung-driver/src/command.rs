@@ -1,9 +1,12 @@
 //! What a front end asks for.
 
 use std::fmt;
+use std::sync::Arc;
 
 use sprung::scene::Scene;
-use sprung::{Change, Vec3};
+use sprung::{Change, Params, Result, Simulation, Vec3};
+
+use crate::options::Options;
 
 /// A scene to open.
 #[derive(Clone, Debug)]
@@ -14,11 +17,65 @@ pub struct Source {
     pub scene: Scene,
 }
 
+/// A simulation that is under way, to go on with.
+#[derive(Clone)]
+pub struct Running {
+    /// What to call its scene.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+    /// The scene's own parameters.
+    pub params: Arc<Params>,
+    /// The simulation, of a model that the scene was built into.
+    pub simulation: Simulation,
+}
+
+/// A simulation that somebody else knows how to bring, such as one in a file.
+#[derive(Clone)]
+pub struct Kept {
+    /// What to call it until it is there.
+    pub name: String,
+    /// Brings it. As that may take a while, the driver asks for it where it works itself; the options say how much memory
+    /// may be taken.
+    pub bring: Arc<dyn Fn(&Options) -> Result<Running> + Send + Sync>,
+}
+
+impl fmt::Debug for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Kept").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// What a driver begins with.
+#[derive(Clone)]
+pub enum Beginning {
+    /// A scene at its start.
+    Scene(Source),
+    /// A simulation that is under way.
+    Running(Box<Running>),
+}
+
+impl From<Source> for Beginning {
+    fn from(source: Source) -> Self {
+        Self::Scene(source)
+    }
+}
+
+impl From<Running> for Beginning {
+    fn from(running: Running) -> Self {
+        Self::Running(Box::new(running))
+    }
+}
+
 /// Something a front end asks of the driver.
 #[derive(Clone, Debug)]
 pub enum Command {
     /// Opens a scene; the one before is gone.
     Open(Box<Source>),
+    /// Goes on with a simulation that was kept; the scene before is gone. What holds a point in it lets go.
+    GoOn(Kept),
+    /// Takes a checkpoint of this moment, which reports carry from then on (true), or lets it go (false).
+    Checkpoint(bool),
     /// Plays (true) or pauses (false).
     Play(bool),
     /// Pauses and takes one step.

@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use sprung::{Code, Energy, Error, Result, Simulation, Vec3};
+use sprung::{Checkpoint, Energy, Error, Result, Simulation, Vec3};
 
-use crate::command::{Command, Fix, Source};
+use crate::command::{Beginning, Command, Fix, Running, Source};
 use crate::fixes;
 use crate::hand::Hand;
 use crate::job::Job;
@@ -14,7 +14,7 @@ use crate::options::Options;
 use crate::pictures::Pictures;
 use crate::playing::Playing;
 use crate::report::{Opened, Report, Timeline, Trouble};
-use crate::run::Run;
+use crate::run::{Run, let_go};
 use crate::substeps::Auto;
 use crate::supervisor::Supervisor;
 use crate::undo::Undo;
@@ -46,6 +46,8 @@ pub struct Driver {
     energy_at: f64,
     compares: bool,
     wants_forces: bool,
+    /// The moment that was to be kept.
+    checkpoint: Option<Arc<Checkpoint>>,
     /// Real time that has passed, but for rests, s.
     pub(crate) clock: f64,
     steps_taken: u64,
@@ -54,20 +56,20 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Opens a first scene, paused.
+    /// Opens a first scene, or goes on with a simulation, paused.
     ///
     /// # Errors
     /// If the scene cannot be built.
-    pub fn new(source: Source) -> Result<Self> {
-        Self::with(source, Options::default())
+    pub fn new(beginning: impl Into<Beginning>) -> Result<Self> {
+        Self::with(beginning, Options::default())
     }
 
     /// As [`new`](Self::new), with so much memory and these threads.
     ///
     /// # Errors
     /// As [`new`](Self::new), and [`Code::TooLarge`] for a scene that needs more memory than there is.
-    pub fn with(source: Source, options: Options) -> Result<Self> {
-        let (simulation, opened) = build(source, 1, &options)?;
+    pub fn with(beginning: impl Into<Beginning>, options: Options) -> Result<Self> {
+        let (simulation, opened) = build(beginning.into(), 1, &options)?;
         let mut run = Run::new(simulation, has_room_for_two(&opened, &options));
         Ok(Self {
             playing: Playing::default(),
@@ -86,6 +88,7 @@ impl Driver {
             energy_at: 0.0,
             compares: false,
             wants_forces: false,
+            checkpoint: None,
             clock: 0.0,
             steps_taken: 0,
             last: None,
@@ -204,6 +207,7 @@ impl Driver {
             samples: self.run.samples.clone(),
             trouble: self.trouble.clone(),
             fixes: self.fixes.clone(),
+            checkpoint: self.checkpoint.clone(),
             busy: self.job.as_ref().map(|job| job.describe(self.run.step_now())),
         });
         self.last = Some(report.clone());
@@ -212,7 +216,9 @@ impl Driver {
 
     fn try_to(&mut self, command: Command) -> Result<()> {
         match command {
-            Command::Open(source) => self.open(*source)?,
+            Command::Open(source) => self.open(Beginning::Scene(*source))?,
+            Command::GoOn(kept) => self.open((kept.bring)(&self.options)?.into())?,
+            Command::Checkpoint(on) => self.checkpoint = on.then(|| Arc::new(self.run.checkpoint())),
             Command::Play(on) => {
                 self.playing.switch(on);
                 self.pictures.rest();
@@ -254,8 +260,8 @@ impl Driver {
         Ok(())
     }
 
-    fn open(&mut self, source: Source) -> Result<()> {
-        let (simulation, opened) = build(source, self.opened.serial + 1, &self.options)?;
+    fn open(&mut self, beginning: Beginning) -> Result<()> {
+        let (simulation, opened) = build(beginning, self.opened.serial + 1, &self.options)?;
         self.run = Run::new(simulation, has_room_for_two(&opened, &self.options));
         self.size = diagonal(&opened.first.positions);
         self.undo = Undo::new(&opened.model);
@@ -263,7 +269,7 @@ impl Driver {
         self.pictures = Pictures::new(&opened.first, &self.run.simulation);
         self.energy = self.run.energy();
         self.opened = opened;
-        (self.auto, self.hand, self.job) = (None, None, None);
+        (self.auto, self.hand, self.job, self.checkpoint) = (None, None, None, None);
         self.waiting.clear();
         self.clear_trouble();
         self.playing.forget();
@@ -360,32 +366,24 @@ impl Driver {
     }
 }
 
-fn build(source: Source, serial: u64, options: &Options) -> Result<(Simulation, Arc<Opened>)> {
-    let needed = source.scene.estimated_bytes();
-    if let Some(limit) = options.memory_limit
-        && needed > limit
-    {
-        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
-        let sentence = format!(
-            "{} needs about {} MiB of memory, and there are {} MiB",
-            source.name,
-            mib(needed),
-            mib(limit)
-        );
-        return Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or springs"));
-    }
-    let mut simulation = source.scene.simulation()?;
+fn build(beginning: Beginning, serial: u64, options: &Options) -> Result<(Simulation, Arc<Opened>)> {
+    let Running { name, scene, params, mut simulation } = match beginning {
+        Beginning::Scene(Source { name, scene }) => {
+            options.check_memory(scene.estimated_bytes(), &name)?;
+            let simulation = scene.simulation()?;
+            Running { params: Arc::new(simulation.params().clone()), name, scene, simulation }
+        }
+        Beginning::Running(running) => {
+            let mut running = *running;
+            // Whoever held a point is not here.
+            let_go(&mut running.simulation);
+            running
+        }
+    };
     simulation.set_workers(options.workers.clone());
     simulation.keep_history(options.history_bytes);
-    let opened = Opened {
-        serial,
-        name: source.name,
-        scene: source.scene,
-        model: simulation.model().clone(),
-        params: Arc::new(simulation.params().clone()),
-        first: Arc::new(simulation.snapshot().clone()),
-    };
-    Ok((simulation, Arc::new(opened)))
+    let (model, first) = (simulation.model().clone(), Arc::new(simulation.snapshot().clone()));
+    Ok((simulation, Arc::new(Opened { serial, name, scene, model, params, first })))
 }
 
 /// Whether an earlier run can be kept beside this one.

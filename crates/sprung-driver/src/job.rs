@@ -45,7 +45,7 @@ impl Job {
 impl Driver {
     /// Whether a command has to wait for what is under way: it is about the state that this will lead to.
     pub(crate) fn must_wait(&self, command: &Command) -> bool {
-        let takes_over = matches!(command, Command::Open(_) | Command::Reset);
+        let takes_over = matches!(command, Command::Open(_) | Command::GoOn(_) | Command::Reset);
         let is_about_the_state = !leaves_alone(command);
         let newer_seek = matches!(
             (&self.job, command),
@@ -215,6 +215,7 @@ pub(crate) fn leaves_alone(command: &Command) -> bool {
             | Command::WantForces(_)
             | Command::Watch(_)
             | Command::Compare(_)
+            | Command::Checkpoint(false)
             | Command::Dismiss
     )
 }

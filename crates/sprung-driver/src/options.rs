@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use sprung::{Inline, SettleOptions, Workers};
+use sprung::{Code, Error, Inline, Result, SettleOptions, Workers};
 
 /// Memory for the recording unless said otherwise, bytes.
 pub const DEFAULT_HISTORY_BYTES: usize = 256 << 20;
@@ -15,7 +15,7 @@ pub struct Options {
     /// leaves, or in a quarter. The rest is replayed from them, so that less memory means slower seeking, never less to go
     /// back to.
     pub history_bytes: usize,
-    /// Scenes that need more than this are refused, bytes. `None`: no limit.
+    /// Scenes and checkpoints that need more than this are refused, bytes. `None`: no limit.
     pub memory_limit: Option<u64>,
     /// Threads to step with.
     pub workers: Arc<dyn Workers>,
@@ -31,6 +31,20 @@ impl Default for Options {
             workers: Arc::new(Inline),
             settle: SettleOptions::default(),
         }
+    }
+}
+
+impl Options {
+    /// Refuses what needs more memory than there is.
+    ///
+    /// # Errors
+    /// [`Code::TooLarge`].
+    pub fn check_memory(&self, needed: u64, what: &str) -> Result<()> {
+        let Some(limit) = self.memory_limit.filter(|limit| needed > *limit) else { return Ok(()) };
+        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+        let sentence =
+            format!("{what} needs about {} MiB of memory, and there are {} MiB", mib(needed), mib(limit));
+        Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or springs"))
     }
 }
 

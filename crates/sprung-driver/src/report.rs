@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sprung::scene::Scene;
 use sprung::stability::Limit;
-use sprung::{BlowUp, Energy, Error, Model, Params, Snapshot, Vec3};
+use sprung::{BlowUp, Checkpoint, Energy, Error, Model, Params, Snapshot, Vec3};
 
 use crate::command::{Fix, Pace, Probe};
 use crate::samples::Samples;
@@ -22,7 +22,7 @@ pub struct Opened {
     pub model: Arc<Model>,
     /// The scene's own parameters.
     pub params: Arc<Params>,
-    /// The first state.
+    /// The first state: that of the scene, or of the checkpoint that is gone on from.
     pub first: Arc<Snapshot>,
 }
 
@@ -75,6 +75,8 @@ pub struct Report {
     pub trouble: Option<Trouble>,
     /// What would mend a blow-up: only fixes that are stable at its last good state.
     pub fixes: Vec<Fix>,
+    /// The moment that was to be kept, by [`Command::Checkpoint`](crate::Command::Checkpoint).
+    pub checkpoint: Option<Arc<Checkpoint>>,
     /// What it is busy with, where that takes longer than a moment, such as "replaying".
     pub busy: Option<String>,
 }
@@ -110,7 +112,7 @@ pub struct Timeline {
 impl Timeline {
     /// The time of a recorded step, s.
     pub fn time_of(&self, step: u64) -> f64 {
-        crate::timeline::time_of(&self.clock, step)
+        crate::timeline::time_of(&self.clock, self.first, step)
     }
 }
 

@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use sprung::{
-    Change, Energy, Params, PointReading, Result, SettleOptions, Settled, Simulation, SpringReading,
+    Change, Checkpoint, Energy, Params, PointReading, Result, SettleOptions, Settled, Simulation,
+    SpringReading,
 };
 
 use crate::command::Probe;
@@ -30,6 +31,8 @@ pub(crate) struct Run {
     pub keeps_ghost: bool,
     pub ledger: bool,
     pub ledger_is_whole: bool,
+    /// Whether nothing was lost uncounted before the first recorded step.
+    was_whole: bool,
     /// The parameters of the newest step.
     in_force: Arc<Params>,
     /// The sample of this very step was taken under other circumstances.
@@ -40,15 +43,17 @@ impl Run {
     pub fn new(mut simulation: Simulation, keeps_ghost: bool) -> Self {
         let springs = simulation.model().spring_count();
         let ledger = springs <= SMALL;
+        let was_whole = simulation.keeps_ledger() || simulation.now().0 == 0;
         simulation.keep_ledger(ledger);
         let mut run = Self {
-            recorded: Recorded::new(simulation.state()),
+            recorded: Recorded::new(simulation.state(), simulation.params().dt),
             samples: Samples::new(simulation.now().0, springs),
             watched: Arc::default(),
             ghost: None,
             keeps_ghost,
             ledger,
-            ledger_is_whole: ledger,
+            ledger_is_whole: ledger && was_whole,
+            was_whole,
             in_force: Arc::new(simulation.params().clone()),
             sample_is_stale: false,
             simulation,
@@ -169,6 +174,22 @@ impl Run {
         let_go(&mut self.simulation);
     }
 
+    /// This moment, to be taken up again elsewhere: with no hand at it.
+    pub fn checkpoint(&mut self) -> Checkpoint {
+        let params = self.params();
+        let mut checkpoint = if params.grabs.is_empty() && params.carried.is_empty() {
+            self.simulation.checkpoint()
+        } else {
+            // On a clone, as here the hand holds on.
+            let mut without = self.simulation.clone();
+            let_go(&mut without);
+            without.checkpoint()
+        };
+        // Books that were opened late are not to be taken for whole ones.
+        checkpoint.keeps_ledger &= self.ledger_is_whole;
+        checkpoint
+    }
+
     /// Brings the scene to rest, with no hand at it; in the past as a branch.
     ///
     /// # Errors
@@ -198,12 +219,14 @@ impl Run {
         }
         let params = without_hands(self.params());
         self.simulation.reset();
+        // A checkpoint may have been taken while a hand held a point.
+        self.let_go();
         if let Some(ghost) = &mut self.ghost {
             ghost.parted = self.simulation.now();
         }
-        self.recorded = Recorded::new(self.simulation.state());
+        self.recorded = Recorded::new(self.simulation.state(), self.params().dt);
         self.samples = Samples::new(self.step_now(), self.simulation.model().spring_count());
-        self.ledger_is_whole = self.ledger;
+        self.ledger_is_whole = self.ledger && self.was_whole;
         self.set(&params)?;
         self.sample();
         Ok(())
@@ -214,7 +237,8 @@ impl Run {
         if on != self.ledger {
             self.ledger = on;
             self.simulation.keep_ledger(on);
-            self.ledger_is_whole = on && self.recorded.newest.0 == self.recorded.first.0;
+            let is_at_first = self.recorded.newest.0 == self.recorded.first.0;
+            self.ledger_is_whole = on && is_at_first && self.was_whole;
         }
     }
 
@@ -280,7 +304,7 @@ impl Run {
 }
 
 /// Every hand lets go.
-fn let_go(simulation: &mut Simulation) {
+pub(crate) fn let_go(simulation: &mut Simulation) {
     let params = simulation.params();
     let grabbed = params.grabs.iter().map(|grab| Change::Release(grab.point));
     let carried = params.carried.keys().map(|&point| Change::Carry(point, None));

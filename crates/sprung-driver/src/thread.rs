@@ -184,8 +184,13 @@ impl Worker {
 
     fn obey(&mut self) {
         while let Some(command) = self.inbox.heard.pop_front() {
-            if let Command::Open(source) = &command {
-                self.shared.publish_busy(&format!("opening {}", source.name));
+            let opens = match &command {
+                Command::Open(source) => Some(&source.name),
+                Command::GoOn(kept) => Some(&kept.name),
+                _ => None,
+            };
+            if let Some(name) = opens {
+                self.shared.publish_busy(&format!("opening {name}"));
             }
             let settles = matches!(command, Command::Settle);
             self.driver.obey(command);

@@ -21,9 +21,18 @@ pub(crate) struct Recorded {
 }
 
 impl Recorded {
-    pub fn new(state: &State) -> Self {
+    /// From this state on, with steps of length `dt` (s).
+    pub fn new(state: &State, dt: f64) -> Self {
         let first = (state.step, state.time);
-        Self { first, newest: first, clock: Arc::default(), marks: Arc::default() }
+        // Of a run that is gone on with, the steps of this length may have begun earlier: times are counted from there.
+        let (step, time) = state.clock();
+        let clock = if step < state.step { vec![(step, time, dt)] } else { Vec::new() };
+        Self { first, newest: first, clock: Arc::new(clock), marks: Arc::default() }
+    }
+
+    /// The time of a recorded step, s.
+    pub fn time_of(&self, step: u64) -> f64 {
+        time_of(&self.clock, self.first, step)
     }
 
     /// A new step of length `dt` (s) has led to this state.
@@ -53,7 +62,7 @@ impl Recorded {
     pub fn mark(&mut self, state: &State, label: &str) {
         if let Some((step, last)) = self.marks.last()
             && last == label
-            && state.time - time_of(&self.clock, *step) < SAME_MARK
+            && state.time - self.time_of(*step) < SAME_MARK
         {
             return;
         }
@@ -75,14 +84,14 @@ impl Recorded {
         let rounding = 3.0 * f64::EPSILON * (time.abs() + start.abs()) / dt;
         let steps = ((time - start) / dt + rounding) as u64;
         let end = self.clock.get(segment).map_or(self.newest.0, |next| next.0);
-        step.saturating_add(steps).min(end)
+        step.saturating_add(steps).min(end).max(self.first.0)
     }
 }
 
-/// The time of a recorded step, s.
-pub(crate) fn time_of(clock: &[(u64, f64, f64)], step: u64) -> f64 {
+/// The time of a step of a run that begins with this step and time, s.
+pub(crate) fn time_of(clock: &[(u64, f64, f64)], begin: (u64, f64), step: u64) -> f64 {
     let segment = clock.partition_point(|segment| segment.0 <= step).saturating_sub(1);
-    clock.get(segment).map_or(0.0, |&(first, start, dt)| start + step.saturating_sub(first) as f64 * dt)
+    clock.get(segment).map_or(begin.1, |&(first, start, dt)| start + step.saturating_sub(first) as f64 * dt)
 }
 
 #[cfg(test)]
@@ -97,15 +106,34 @@ mod tests {
 
     #[test]
     fn steps_and_times_agree_across_changes_of_dt() {
-        let mut recorded = Recorded::new(&state(0, 0.0));
+        let mut recorded = Recorded::new(&state(0, 0.0), 0.1);
         (1..=10u32).for_each(|step| recorded.arrived((step.into(), 0.1 * f64::from(step)), 0.1));
         (1..=10u32).for_each(|step| recorded.arrived(((10 + step).into(), 1.0 + 0.5 * f64::from(step)), 0.5));
         for step in 0..=20 {
-            assert_eq!(recorded.step_at(time_of(&recorded.clock, step)), step);
+            assert_eq!(recorded.step_at(recorded.time_of(step)), step);
         }
         assert_eq!((recorded.step_at(-1.0), recorded.step_at(1.4), recorded.step_at(99.0)), (0, 10, 20));
         recorded.branch_at(&state(10, 1.0));
         assert_eq!((recorded.clock.len(), recorded.newest), (1, (10, 1.0)));
+    }
+
+    /// A run that is gone on with counts from where its steps became so long, and knows nothing of before its first one.
+    #[test]
+    fn a_run_may_begin_in_the_middle() {
+        let mut begun = state(10, 0.5 + 7.0 * 0.1);
+        begun.set_clock((3, 0.5));
+        let mut recorded = Recorded::new(&begun, 0.1);
+        assert_eq!(
+            (recorded.time_of(10), recorded.step_at(0.0), recorded.step_at(9.0)),
+            (begun.time, 10, 10)
+        );
+        recorded.arrived((11, 0.5 + 8.0 * 0.1), 0.1);
+        assert_eq!((recorded.time_of(11), recorded.step_at(recorded.newest.1)), (0.5 + 8.0 * 0.1, 11));
+        // With steps of another length from just there.
+        let mut begun = state(10, 1.25);
+        begun.set_clock((10, 1.25));
+        let at_once = Recorded::new(&begun, 0.1);
+        assert_eq!((at_once.time_of(10), at_once.step_at(1.25)), (1.25, 10));
     }
 
     /// Far from the start, where a step is a few thousand ulps of the time.
@@ -127,7 +155,7 @@ mod tests {
 
     #[test]
     fn marks_of_one_edit_are_one_and_a_branch_drops_later_ones() {
-        let mut recorded = Recorded::new(&state(0, 0.0));
+        let mut recorded = Recorded::new(&state(0, 0.0), 0.1);
         for step in 0..100u32 {
             let state = state(step.into(), 0.01 * f64::from(step));
             if step > 0 {

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{at, check, source};
+use common::{at, check, kept, source};
 use proptest::prelude::*;
 use sprung::{Change, Vec3};
 use sprung_driver::{Command, Driver, Edit, Fix, Handle, Pace, Probe, Pull, Trouble};
@@ -15,6 +15,8 @@ enum Act {
     Pass(f64, u32),
     /// Goes to this share of what is recorded.
     Seek(f64),
+    /// Goes on with the moment that was kept, if one was.
+    GoOn,
 }
 
 fn change() -> impl Strategy<Value = Change> {
@@ -62,6 +64,7 @@ fn act() -> impl Strategy<Value = Act> {
         1 => any::<bool>().prop_map(Command::WantForces),
         1 => Just(Command::Watch(vec![Probe::Speed(3), Probe::Strain(2), Probe::Position(99, 9)])),
         2 => any::<bool>().prop_map(Command::Compare),
+        3 => any::<bool>().prop_map(Command::Checkpoint),
         2 => fix.prop_map(Command::Fix),
         3 => (-1.0..3.0).prop_map(Command::RewindAndGoOn),
         1 => Just(Command::FindSharpLimit),
@@ -73,6 +76,7 @@ fn act() -> impl Strategy<Value = Act> {
         10 => command.prop_map(Act::Send),
         10 => (0.0..0.1, 0u32..12).prop_map(|(seconds, steps)| Act::Pass(seconds, steps)),
         2 => (0.0..1.0).prop_map(Act::Seek),
+        1 => Just(Act::GoOn),
     ]
 }
 
@@ -95,6 +99,12 @@ proptest! {
                     let newest = driver.report().timeline.newest.0;
                     driver.obey(Command::Seek((share * newest as f64) as u64));
                 }
+                Act::GoOn => {
+                    let report = driver.report();
+                    if report.checkpoint.is_some() {
+                        driver.obey(Command::GoOn(kept(&report)));
+                    }
+                }
                 Act::Pass(seconds, steps) => {
                     let mut left = steps;
                     driver.advance(seconds, &mut || {
@@ -113,12 +123,14 @@ proptest! {
         driver.obey(Command::Release);
         driver.advance(0.0, &mut || true);
         let mut handle = Handle::inline(driver);
-        let newest = handle.report().timeline.newest.0;
+        let timeline = handle.report().timeline.clone();
+        let (first, newest) = (timeline.first.0, timeline.newest.0);
+        let half_way = first.midpoint(newest);
         let end = at(&mut handle, newest);
-        let middle = at(&mut handle, newest / 2);
-        at(&mut handle, 0);
-        prop_assert_eq!(at(&mut handle, newest / 2), middle);
-        at(&mut handle, 0);
+        let middle = at(&mut handle, half_way);
+        at(&mut handle, first);
+        prop_assert_eq!(at(&mut handle, half_way), middle);
+        at(&mut handle, first);
         handle.send(Command::Pace(Pace::RealTime));
         handle.send(Command::Play(true));
         let mut turns = 0;

@@ -13,12 +13,13 @@ mod keeper;
 mod sections;
 
 use std::io::{Read, Write};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sprung::build::Mesh;
 use sprung::scene::Scene;
-use sprung::{Checkpoint, Code, Error, Model, Result, Simulation};
+use sprung::{Checkpoint, Code, Error, Model, Params, Result, Simulation};
 
 use crate::export::{Mark, Options};
 
@@ -31,6 +32,23 @@ pub const ENDING: &str = "sprung";
 
 /// The newest version of the format, which is the one that is written.
 pub const VERSION: u32 = 2;
+
+/// Whether a file of this name is a checkpoint.
+pub fn is_name(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(ENDING))
+}
+
+/// Refuses names that are not those of checkpoints.
+///
+/// # Errors
+/// [`Code::Unsupported`], naming the file.
+pub fn check_name(path: &Path) -> Result<()> {
+    if is_name(path) {
+        return Ok(());
+    }
+    let error = Error::new(Code::Unsupported, "is no name for a checkpoint, which ends with .sprung");
+    Err(error.in_file(path.display().to_string()))
+}
 
 /// What a checkpoint file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,16 +108,33 @@ pub struct Plan {
     pub ended: Option<String>,
 }
 
+/// A simulation that was taken up again.
+#[derive(Clone)]
+pub struct Resumed {
+    /// The scene that it is of.
+    pub scene: Scene,
+    /// The scene's own parameters.
+    pub params: Params,
+    /// The simulation.
+    pub simulation: Simulation,
+}
+
 impl Saved {
     /// A simulation as it is now.
     pub fn new(scene_name: &str, scene: &Scene, simulation: &mut Simulation) -> Self {
+        let checkpoint = simulation.checkpoint();
+        Self::of(scene_name, scene, simulation.model(), checkpoint)
+    }
+
+    /// A checkpoint that was taken of a simulation of this model, which the scene was built into.
+    pub fn of(scene_name: &str, scene: &Scene, model: &Model, checkpoint: Checkpoint) -> Self {
         Self {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             scene_name: scene_name.to_owned(),
             scene: scene.to_toml(),
             meshes: scene.meshes(),
-            fingerprint: simulation.model().fingerprint(),
-            checkpoint: simulation.checkpoint(),
+            fingerprint: model.fingerprint(),
+            checkpoint,
             recording: None,
         }
     }
@@ -142,5 +177,25 @@ impl Saved {
             return Err(Error::new(Code::Conflict, sentence));
         }
         Simulation::resume_from(model, self.checkpoint.clone())
+    }
+
+    /// Builds the scene and goes on with the simulation. `check` is asked before memory is taken: how many bytes, for what.
+    ///
+    /// # Errors
+    /// Those of `check`, of [`scene`](Self::scene) and of [`simulation`](Self::simulation), in one sentence about the file.
+    pub fn resume(&self, check: &dyn Fn(u64, &str) -> Result<()>) -> Result<Resumed> {
+        let resumed = || -> Result<Resumed> {
+            let scene = self.scene()?;
+            check(scene.estimated_bytes(), "the scene in it")?;
+            let (model, params, _) = scene.build()?;
+            Ok(Resumed { simulation: self.simulation(model)?, scene, params })
+        };
+        resumed().map_err(|error| {
+            let place = error.place();
+            let inner = place.field.as_ref().map(|field| format!("{field}: ")).unwrap_or_default();
+            let sentence = format!("cannot be gone on with: {inner}{}", error.sentence());
+            let outer = Error::new(error.code(), sentence);
+            error.fix().map(str::to_owned).into_iter().fold(outer, Error::with_fix)
+        })
     }
 }

@@ -1,21 +1,26 @@
-//! The cards to open and to save a scene, and the question whether a file may be replaced.
+//! The cards to open and to save a scene or a checkpoint, and the question whether a file may be replaced.
 
 use std::path::{Path, PathBuf};
 
 use egui::{Context, RichText, TextEdit, Ui, vec2};
 use sprung::scene::Kind;
+use sprung_driver::Command;
+use sprung_io::checkpoint;
 
 use super::{modal, primary};
-use crate::files::{self, Dialog, ENDING, Origin, Wanted};
+use crate::files::{self, Dialog, ENDING, OPENED, Origin, Wanted};
 use crate::media::{Film, SaveRequest};
 use crate::panel::scenes::{entries, scene_button};
 use crate::state::AppState;
+use crate::text::steady;
 
 /// What the card is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Purpose {
     Open,
     Save,
+    /// The simulation as it is, which the driver keeps meanwhile.
+    Checkpoint,
     /// A picture, or the numbers of a plot, that is ready.
     Picture,
     /// A film that was recorded; the view writes it.
@@ -33,6 +38,8 @@ pub struct FileCard {
     asks_to_discard: bool,
     /// The ending of what is saved, for a path that has none.
     ending: &'static str,
+    /// The path is to be taken, once what is to be saved is there.
+    is_entered: bool,
     /// It has just been put up.
     is_new: bool,
 }
@@ -47,6 +54,7 @@ impl FileCard {
             asks_to_replace: None,
             asks_to_discard: false,
             ending: ENDING,
+            is_entered: false,
             is_new: true,
         }
     }
@@ -55,6 +63,13 @@ impl FileCard {
     pub fn save(state: &AppState) -> Self {
         let path = state.files.path_to_save().display().to_string();
         Self { purpose: Purpose::Save, path, ..Self::open() }
+    }
+
+    /// To save the simulation as it is now.
+    pub fn checkpoint(state: &mut AppState) -> Self {
+        let mut card = Self::save(state);
+        card.choose(Purpose::Checkpoint, state);
+        card
     }
 
     /// To save a picture that waits in the state.
@@ -74,6 +89,7 @@ impl FileCard {
         match self.purpose {
             Purpose::Open => "Open a scene",
             Purpose::Save => "Save the scene",
+            Purpose::Checkpoint => "Save a checkpoint",
             Purpose::Picture if self.ending == "csv" => "Save the numbers",
             Purpose::Picture => "Save the picture",
             Purpose::Film => "Save the film",
@@ -86,6 +102,7 @@ impl FileCard {
             Purpose::Picture if !state.save_requests.is_empty() => {
                 state.save_requests.remove(0);
             }
+            Purpose::Checkpoint => state.send(Command::Checkpoint(false)),
             Purpose::Film if matches!(state.filming.film, Film::Waits(_)) => {
                 state.filming.film = Film::Unwanted;
             }
@@ -112,10 +129,11 @@ impl FileCard {
             return self.ask_to_discard(context);
         }
         let (purpose, title) = (self.purpose, self.title());
-        let id = format!("{purpose:?} card");
-        let is_done = modal(context, &id, title, 520.0, |ui| match purpose {
+        // The same card, whichever of the two is chosen in it.
+        let id = if purpose == Purpose::Checkpoint { Purpose::Save } else { purpose };
+        let is_done = modal(context, &format!("{id:?} card"), title, 520.0, |ui| match purpose {
             Purpose::Open => self.open_ui(ui, state),
-            Purpose::Save => self.save_ui(ui, state),
+            Purpose::Save | Purpose::Checkpoint => self.save_ui(ui, state),
             Purpose::Picture => {
                 let ending = self.ending;
                 let about = match ending {
@@ -138,9 +156,10 @@ impl FileCard {
     }
 
     fn open_ui(&mut self, ui: &mut Ui, state: &mut AppState) -> bool {
-        let wanted = Wanted { title: "Open a scene", kind: "scenes", endings: &[ENDING], save_as: None };
+        let wanted =
+            Wanted { title: "Open", kind: "scenes and checkpoints", endings: &OPENED, save_as: None };
         let entered = self.path_row(ui, &wanted, "Open");
-        ui.weak("Or drop a file onto the window.");
+        ui.weak("A scene (.toml) or a checkpoint (.sprung). Or drop a file onto the window.");
         let mut chosen = false;
         for (kind, title) in [
             (Kind::Report, "The four scenes of the report"),
@@ -160,16 +179,47 @@ impl FileCard {
     }
 
     fn save_ui(&mut self, ui: &mut Ui, state: &mut AppState) -> bool {
-        let name = self.path.clone();
-        let wanted =
-            Wanted { title: "Save the scene", kind: "scenes", endings: &[ENDING], save_as: Some(&name) };
-        let entered = self.path_row(ui, &wanted, "Save");
+        ui.horizontal(|ui| {
+            for (purpose, name) in [(Purpose::Save, "Scene"), (Purpose::Checkpoint, "Checkpoint")] {
+                if ui.radio(self.purpose == purpose, name).clicked() {
+                    self.choose(purpose, state);
+                }
+            }
+        });
         ui.add_space(4.0);
+        let (name, ending) = (self.path.clone(), [self.ending]);
+        let kind = if self.purpose == Purpose::Save { "scenes" } else { "checkpoints" };
+        let wanted = Wanted { title: self.title(), kind, endings: &ending, save_as: Some(&name) };
+        self.is_entered |= self.path_row(ui, &wanted, "Save");
+        ui.add_space(4.0);
+        if self.purpose == Purpose::Checkpoint {
+            let Some(checkpoint) = &state.report.checkpoint else {
+                ui.weak("Taking it…");
+                return false;
+            };
+            let time = steady(checkpoint.state.time);
+            ui.weak(format!(
+                "Saved is the simulation as it is at {time} s, with its scene and all parameters. It goes on from there bit for \
+                 bit, when opened here or by `sprung run`. The recorded past and undo are not saved."
+            ));
+            return std::mem::take(&mut self.is_entered) && self.go(state, false);
+        }
         ui.weak(
             "Saved are the scene's bodies as they began, with all parameters as they are now: gravity, dt, sub-steps, masses, \
              springs, pins, ground. `sprung run` takes the same file. Where things are at this moment is not saved.",
         );
-        entered && self.go(state, false)
+        std::mem::take(&mut self.is_entered) && self.go(state, false)
+    }
+
+    /// Saves the scene or, as it is at this moment, the simulation.
+    fn choose(&mut self, purpose: Purpose, state: &mut AppState) {
+        let keeps = purpose == Purpose::Checkpoint;
+        self.ending = if keeps { checkpoint::ENDING } else { ENDING };
+        (self.purpose, self.is_entered) = (purpose, false);
+        if !self.path.is_empty() {
+            self.path = Path::new(&self.path).with_extension(self.ending).display().to_string();
+        }
+        state.send(Command::Checkpoint(keeps));
     }
 
     fn media_ui(
@@ -216,11 +266,11 @@ impl FileCard {
         let path = PathBuf::from(self.path.trim());
         match self.purpose {
             Purpose::Open => {
-                let read = files::read_scene(&path);
-                state.open_or_refuse(read.map(|source| (source, Origin::file(&path))));
+                let found = files::find(&path);
+                state.open_or_refuse(found.map(|found| (found, Origin::file(&path))));
                 true
             }
-            Purpose::Save | Purpose::Picture | Purpose::Film => {
+            _ => {
                 let path = if path.extension().is_none() { path.with_extension(self.ending) } else { path };
                 if path.exists() && !may_replace {
                     self.asks_to_replace = Some(path);
@@ -269,7 +319,11 @@ impl FileCard {
                 Some(request) => files::write(path, &request.bytes),
                 None => return true,
             },
-            _ => files::scene_text(&state.report).and_then(|text| files::write(path, text.as_bytes())),
+            Purpose::Checkpoint => match state.report.checkpoint.clone() {
+                Some(checkpoint) => files::write_checkpoint(path, &state.report, &checkpoint),
+                None => return false,
+            },
+            _ => files::write_scene(path, &state.report),
         };
         match written {
             Ok(bytes) => {

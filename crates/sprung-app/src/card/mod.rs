@@ -87,6 +87,7 @@ impl Cards {
     pub fn file(&mut self, action: Action, state: &mut AppState) {
         self.file = match action {
             Action::Save => Some(file::FileCard::save(state)),
+            Action::Checkpoint => Some(file::FileCard::checkpoint(state)),
             _ => Some(file::FileCard::open()),
         };
     }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use sprung::build::Mesh;
 use sprung::scene::Scene;
 use sprung::{Code, Error, Result, Simulation};
-use sprung_io::checkpoint::{Keeper, Plan as Recorded, Recording, Saved};
+use sprung_io::checkpoint::{self, Keeper, Plan as Recorded, Recording, Saved};
 use sprung_io::{Options, RunInfo};
 
 use super::record::Recorder;
@@ -49,10 +49,7 @@ impl Checkpoints {
         options: &Options,
     ) -> Result<Option<Self>> {
         let Some(path) = &args.checkpoint else { return Ok(None) };
-        if !source::is_checkpoint(&path.to_string_lossy()) {
-            let error = Error::new(Code::Unsupported, "is no name for a checkpoint, which ends with .sprung");
-            return Err(error.in_file(path.display().to_string()));
-        }
+        checkpoint::check_name(path)?;
         let keeper = Keeper::begin(path)?;
         refuse_if_unfinished(path, &keeper)?;
         let outputs = args.output.iter().map(|path| text_of(path)).collect::<Result<_>>()?;

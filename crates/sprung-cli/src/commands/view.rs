@@ -5,7 +5,10 @@ use std::path::PathBuf;
 #[cfg(not(feature = "window"))]
 use sprung::Error;
 use sprung::scene::Scene;
-use sprung::{Code, Result};
+use sprung::{Code, Params, Result, Simulation};
+#[cfg(feature = "window")]
+use sprung_app::{Beginning, Running, Source};
+use sprung_io::checkpoint::Resumed;
 
 use super::demo;
 use crate::args::SceneArgs;
@@ -14,10 +17,10 @@ use crate::console::note;
 use crate::memory;
 use crate::source;
 
-/// Opens the window on a scene, or on that of last time.
+/// Opens the window on a scene or a checkpoint, or on that of last time.
 pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
     // What is wrong with the scene is said before a window is tried.
-    let opened = scene.map(source::scene_and_file).transpose()?;
+    let opened = scene.map(open).transpose()?;
     match window(opened) {
         Err(error) if error.code() == Code::NoWindow => {
             note(format_args!("sprung: {error}. Here is the demonstration instead."));
@@ -27,15 +30,30 @@ pub fn run(scene: Option<&SceneArgs>) -> Result<()> {
     }
 }
 
-/// A scene, the name to call it by, and its file.
-type Opened = (String, Scene, Option<PathBuf>);
+/// The name of a scene, the scene, what is under way of it if that is a checkpoint, and its file.
+type Opened = (String, Scene, Option<(Params, Simulation)>, Option<PathBuf>);
+
+fn open(args: &SceneArgs) -> Result<Opened> {
+    if !source::is_checkpoint(&args.scene) {
+        let (name, scene, path) = source::scene_and_file(args)?;
+        return Ok((name, scene, None, path));
+    }
+    let (path, saved) = source::saved(args)?;
+    let Resumed { scene, params, simulation } = source::resumed(path, &saved)?;
+    Ok((saved.scene_name, scene, Some((params, simulation)), Some(path.to_owned())))
+}
 
 #[cfg(feature = "window")]
 fn window(opened: Option<Opened>) -> Result<()> {
-    let (source, path) =
-        opened.map_or((None, None), |(name, scene, path)| (Some(sprung_app::Source { name, scene }), path));
+    let (beginning, path) = opened.map_or((None, None), |(name, scene, under_way, path)| {
+        let beginning: Beginning = match under_way {
+            None => Source { name, scene }.into(),
+            Some((params, simulation)) => Running { name, scene, params: params.into(), simulation }.into(),
+        };
+        (Some(beginning), path)
+    });
     let (memory_limit, workers) = (memory::available(), source::workers(None)?);
-    sprung_app::run(sprung_app::Options { source, path, memory_limit, workers })
+    sprung_app::run(sprung_app::Options { beginning, path, memory_limit, workers })
 }
 
 #[cfg(not(feature = "window"))]

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 use sprung::scene::Scene;
-use sprung::{Change, Snapshot};
-use sprung_driver::{Command, Driver, Edit, Handle, Report, Source, Trouble};
+use sprung::{Change, Checkpoint, Result, Simulation, Snapshot};
+use sprung_driver::{Command, Driver, Edit, Handle, Kept, Report, Running, Source, Trouble};
 
 /// So many random cases, the same ones on every machine.
 pub fn cases(count: u32) -> ProptestConfig {
@@ -42,6 +42,20 @@ pub fn open_source(source: Source) -> Handle {
 /// An edit of one change.
 pub fn edit(label: &str, change: Change) -> Command {
     Command::Edit(Edit::new(label, vec![change]))
+}
+
+/// What goes on with a checkpoint, as a front end makes it from a file.
+pub fn kept(report: &Report) -> Kept {
+    let (name, scene) = (report.opened.name.clone(), report.opened.scene.clone());
+    let checkpoint = report.checkpoint.clone().expect("a moment is kept");
+    Kept { name: name.clone(), bring: Arc::new(move |_| running(&name, &scene, &checkpoint)) }
+}
+
+/// A checkpoint of a scene, taken up again.
+pub fn running(name: &str, scene: &Scene, checkpoint: &Checkpoint) -> Result<Running> {
+    let (model, params, _) = scene.build()?;
+    let simulation = Simulation::resume_from(model, checkpoint.clone())?;
+    Ok(Running { name: name.to_owned(), scene: scene.clone(), params: Arc::new(params), simulation })
 }
 
 /// Plays for so many sixtieths of a second.

@@ -37,8 +37,13 @@ impl Simulation {
         Checkpoint {
             state: self.current.copied(),
             params: self.params.clone(),
-            keeps_ledger: self.ledger.is_some(),
+            keeps_ledger: self.keeps_ledger(),
         }
+    }
+
+    /// Whether every step's works are summed for the energy ledger.
+    pub fn keeps_ledger(&self) -> bool {
+        self.ledger.is_some()
     }
 
     /// Goes on from a checkpoint: bit for bit as the simulation would have gone on that it was taken of, its ledger and its
