@@ -267,7 +267,7 @@ fn child_with_few_files() {
 
     let mut builder = sprung::ModelBuilder::new();
     for body in 0..300 {
-        builder.begin_body(&format!("body {body}")).expect("a name of its own");
+        builder.begin_body(format!("body {body}")).expect("a name of its own");
         builder.add_point(Vec3::X * body as f32, 1.0).expect("an ordinary point");
     }
     let (model, params, _) = builder.build().expect("an ordinary model");
