@@ -1,7 +1,8 @@
 """Opens what one run wrote in Blender, steps through it, and compares every vertex with the run's NumPy archive.
 
 Run by `cargo xtask blender` as: check_blender.py FOLDER, where FOLDER holds run.npz, run.pc2, run.mdd and the sequences
-run.NNNN.obj and run.NNNN.ply of the same run, written with `--up z`. It does what docs/export.md says to click.
+run.NNNN.obj and run.NNNN.ply of the same run, written with `--up z`. It does what docs/export.md says to click. A vertex that
+is no point is held against the .ply, as it is in no archive.
 """
 
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+import run_ply
 
 
 def vertices(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -22,16 +24,6 @@ def same(found: np.ndarray, expected: np.ndarray, what: str) -> None:
     assert (found == expected).all(), f"{what}: differs by up to {np.abs(found - expected).max()}"
 
 
-def points(path: Path) -> np.ndarray:
-    """Which point of the run each vertex is, from a binary .ply."""
-    head, _, data = path.read_bytes().partition(b"end_header\n")
-    lines = [line.split() for line in head.decode().splitlines()]
-    count = next(int(line[2]) for line in lines if line[:2] == ["element", "vertex"])
-    kinds = {"float": "<f4", "int": "<i4", "uchar": "u1"}
-    record = [(line[2], kinds[line[1]]) for line in lines if line[0] == "property" and line[1] in kinds]
-    return np.frombuffer(data, record, count)["point"]
-
-
 def opened(path: Path) -> bpy.types.Object:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     read = bpy.ops.wm.obj_import if path.suffix == ".obj" else bpy.ops.wm.ply_import
@@ -41,9 +33,12 @@ def opened(path: Path) -> bpy.types.Object:
 
 def main(folder: Path) -> None:
     archive = np.load(folder / "run.npz")
-    x, y, z = np.moveaxis(archive["positions"], -1, 0)
-    positions = np.stack([x, -z, y], axis=-1)
-    positions = positions[:, points(folder / "run.0000.ply")]
+
+    def turn(vectors: np.ndarray) -> np.ndarray:
+        x, y, z = np.moveaxis(vectors, -1, 0)
+        return np.stack([x, -z, y], axis=-1)
+
+    positions = run_ply.Sequence(folder / "run", turn(archive["positions"]), turn(archive["velocities"])).positions
     frames = len(positions)
 
     for ending in (".obj", ".ply"):
@@ -66,7 +61,7 @@ def main(folder: Path) -> None:
 
     count = positions.shape[0] * positions.shape[1]
     version = bpy.app.version_string
-    print(f"{frames} frames, {count} vertices: Blender {version} shows .obj, .ply, .pc2 and .mdd where the archive has them")
+    print(f"{frames} frames, {count} vertices: Blender {version} shows .obj, .ply, .pc2 and .mdd where the run has them")
 
 
 if __name__ == "__main__":

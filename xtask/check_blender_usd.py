@@ -3,13 +3,15 @@
     python check_blender_usd.py RUN.npz FRAME_TIME PICTURE.png FILE...
 
 Python must have Blender as a module: `pip install bpy`. PICTURE shows the last frame of the first file, drawn by Cycles; with
-`-` none is drawn. Z is up in Blender, and its importers say so by turning the object (USD) or the vertices (glTF).
+`-` none is drawn. If RUN.NNNN.ply are there, vertices that are no points are held against them. Z is up in Blender, and its importers say so by turning the object (USD) or the vertices (glTF).
 """
 
 import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
+import run_ply
 
 
 def load(path, frame_time):
@@ -32,22 +34,27 @@ def vertices(thing, graph):
     return found.reshape(-1, 3)
 
 
-def points_of(thing, found, first):
-    """Which point each vertex is: said by the file, or else found out by where it is in the first frame."""
+def points_of(thing, found, first, place_of, is_gltf):
+    """The place in `first` of each vertex: by the point that the file says it is, or else by where it is in the first frame."""
     if "point" in thing.data.attributes:
         numbers = thing.data.attributes["point"].data
         points = np.empty(len(numbers), np.int32)
         numbers.foreach_get("value", points)
-        return points
+        return place_of[points]
     # Plus zero, as a turned zero may have another sign. No two points are in one place then.
     point_at = {tuple(position + 0.0): point for point, position in enumerate(first)}
-    upright = np.stack([found[:, 0], found[:, 2], -found[:, 1]], axis=1)
+    upright = np.stack([found[:, 0], found[:, 2], -found[:, 1]], axis=1) if is_gltf else found
     return np.array([point_at[tuple(position + 0.0)] for position in upright])
 
 
-def check(path, archive, frame_time):
+def check(path, run, archive, frame_time):
     things = load(path, frame_time)
     positions, springs = archive["positions"], archive["springs"]
+    place_of = np.arange(positions.shape[1])
+    if Path(run).with_suffix(".0000.ply").exists():
+        # All of the vertices in their order stand for the points.
+        sequence = run_ply.Sequence(Path(run).with_suffix(""), positions, archive["velocities"])
+        positions, springs, place_of = sequence.positions, sequence.edges, sequence.vertex_of
     frames = len(positions)
     is_gltf = path.endswith(".glb")
     # A sample of USD is a frame of Blender's, whatever the rates; a key of glTF lies where its time is.
@@ -66,7 +73,9 @@ def check(path, archive, frame_time):
             turned = np.array(thing.matrix_world.to_3x3())
             if frame == 0:
                 is_curves = thing.type == "CURVES"
-                points[thing] = springs.reshape(-1) if is_curves else points_of(thing, found, positions[0])
+                points[thing] = springs.reshape(-1) if is_curves else points_of(
+                    thing, found, positions[0], place_of, is_gltf
+                )
             chosen = positions[frame, points[thing]]
             if is_gltf:
                 # Vertices are turned, and are sums of two float32, rounded twice, here of all weights and their shapes.
@@ -130,10 +139,10 @@ def draw(path, frame_time, picture):
 
 
 def main():
-    archive, frame_time, picture, *paths = sys.argv[1:]
-    archive = np.load(archive)
+    run, frame_time, picture, *paths = sys.argv[1:]
+    archive = np.load(run)
     for path in paths:
-        check(path, archive, float(frame_time))
+        check(path, run, archive, float(frame_time))
     if picture != "-":
         draw(paths[0], float(frame_time), picture)
 

@@ -1,7 +1,8 @@
 """Opens what one run wrote with other people's readers, and compares every vertex with the run's NumPy archive.
 
 Run by `cargo xtask exports` as: check_exports.py FOLDER UP SCALE, where FOLDER holds run.npz, run.pc2, run.mdd, run.pvd and the
-sequences run.NNNN.obj and run.NNNN.ply of the same run. Which point a vertex is stands in the .ply and .vtp files.
+sequences run.NNNN.obj and run.NNNN.ply of the same run. Which point a vertex is stands in the .ply and .vtp files; one that is
+none is held against the .ply of the same frame.
 """
 
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import meshio
 import numpy as np
+import run_ply
 import trimesh
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
@@ -143,32 +145,36 @@ def main(folder: Path, up: str, scale: float) -> None:
 
     positions, velocities = (turn(archive[name]) * np.float32(scale) for name in ("positions", "velocities"))
     time, springs = archive["time"], archive["springs"].astype(np.int64)
-    ply = trimesh.load(folder / "run.0000.ply", process=False).metadata["_ply_raw"]
-    used = np.asarray(ply["vertex"]["data"]["point"]).ravel()
-    assert (np.diff(used) > 0).all(), "vertices are in the points' order"
-    check_pc2(folder / "run.pc2", positions[:, used])
-    check_mdd(folder / "run.mdd", positions[:, used], time)
+    shown = run_ply.Sequence(folder / "run", positions, velocities)
+    check_pc2(folder / "run.pc2", shown.positions)
+    check_mdd(folder / "run.mdd", shown.positions, time)
 
     entries = ElementTree.parse(folder / "run.pvd").getroot().findall("Collection/DataSet")
     listed = {(float(entry.get("timestep")), entry.get("name")): entry.get("file") for entry in entries}
     assert sorted({at for at, _ in listed}) == time.tolist(), "times in the collection"
-    law = JELLY if len(archive["mass"]) == 1000 else CLOTH
+    law = {1000: JELLY, 400: CLOTH}.get(len(archive["mass"]))
     for frame, at in enumerate(time.tolist()):
         surface = read_vtp(folder / listed[at, "surface"])
         corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         skin = vtk_to_numpy(surface.GetPointData().GetArray("point"))
-        check_vtp(surface, positions[frame, skin], velocities[frame, skin], at)
+        # Vertices that are no points are those of the one body there is then, and the first of all.
+        place = np.where(skin < 0, np.arange(len(skin)), shown.vertex_of[skin])
+        check_vtp(surface, shown.positions[frame, place], shown.velocities[frame, place], at)
         points = read_vtp(folder / listed[at, "points"])
         check_vtp(points, positions[frame], velocities[frame], at)
-        if points.GetNumberOfLines():
+        if points.GetNumberOfLines() and law is None:  # springs that are not all alike
+            lines = vtk_to_numpy(points.GetLines().GetConnectivityArray()).reshape(-1, 2)
+            assert (lines == springs).all(), "springs in VTK"
+        elif points.GetNumberOfLines():
             check_springs(points, archive, frame, turn, law)
         else:
             assert points.GetNumberOfVerts() == len(archive["mass"]), "without springs each point is a cell"
-        faces = np.searchsorted(used, skin[corners])
-        check_obj(folder / f"run.{frame:04}.obj", positions[frame, used], faces)
-        check_ply(folder / f"run.{frame:04}.ply", positions[frame, used], velocities[frame, used], faces, springs)
-    count = len(time) * len(used)
-    print(f"{len(time)} frames, {count} vertices: .pc2, .mdd, .obj, .ply and .vtp hold the archive's numbers")
+        faces = place[corners]
+        check_obj(folder / f"run.{frame:04}.obj", shown.positions[frame], faces)
+        ply, edges = folder / f"run.{frame:04}.ply", shown.vertex_of[springs]
+        check_ply(ply, shown.positions[frame], shown.velocities[frame], faces, edges)
+    count = len(time) * len(shown.point)
+    print(f"{len(time)} frames, {count} vertices: .pc2, .mdd, .obj, .ply and .vtp hold the run's numbers")
 
 
 if __name__ == "__main__":

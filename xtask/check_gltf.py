@@ -3,13 +3,16 @@
     python check_gltf.py RUN.npz FRAME_TIME SHOWN FILE...
 
 SHOWN is `clip`, or the number of the one frame that the files hold. The first shape must have the archive's bits; others are
-sums of two float32 and may be off by the rounding of the difference and of the sum.
+sums of two float32 and may be off by the rounding of the difference and of the sum. If RUN.NNNN.ply are there, written with the
+same options, vertices are held against theirs: a mesh that points carry along has vertices that are no points.
 """
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pygltflib
+import run_ply
 import trimesh
 
 HALF_ULP = 2.0**-24
@@ -47,26 +50,38 @@ def weights_at(gltf, node, frames, frame_time):
     return array(gltf, sampler.output).reshape(frames, frames - 1)
 
 
-def check(path, archive, frame_time, shown):
+def check(path, run, archive, frame_time, shown):
     gltf = pygltflib.GLTF2().load(path)
-    positions = archive["positions"]
+    positions, springs = archive["positions"], archive["springs"]
+    points = positions.shape[1]
+    has_ply = Path(run).with_suffix(".0000.ply").exists()
+    if has_ply:
+        # All of the vertices in their order stand for the points.
+        sequence = run_ply.Sequence(Path(run).with_suffix(""), positions, archive["velocities"])
+        positions, springs = sequence.positions, sequence.edges
+        points = positions.shape[1]
     if shown != "clip":
         positions = positions[[int(shown)]]
-    frames, points, _ = positions.shape
+    frames = len(positions)
     (scene,) = gltf.scenes
-    # Which point a vertex is follows from where it is in the first frame, in which no two points are in one place.
+    # Which point a vertex is follows from where it is in the first frame, in which no two points are in one place; of the
+    # vertices of a .ply two may be, but there they are all in the order of the meshes.
     point_at = {position.tobytes(): point for point, position in enumerate(positions[0])}
-    assert len(point_at) == points
+    assert has_ply or len(point_at) == points
     left, vertices, worst = set(range(points)), 0, 0.0
     for number in scene.nodes:
         node = gltf.nodes[number]
         (primitive,) = gltf.meshes[node.mesh].primitives
         indices = None if primitive.indices is None else array(gltf, primitive.indices)[:, 0]
         base = array(gltf, primitive.attributes.POSITION)
-        chosen = np.array([point_at[position.tobytes()] for position in base])
+        if has_ply:
+            chosen = np.arange(points) if primitive.mode == 1 else min(left) + np.arange(len(base))
+        else:
+            chosen = np.array([point_at[position.tobytes()] for position in base])
         assert (np.diff(chosen) > 0).all(), f"{path}: the vertices of {node.name} are out of order"
         if primitive.mode == 1:
-            assert (indices.reshape(-1, 2) == archive["springs"]).all(), f"{path}: springs"
+            assert (indices.reshape(-1, 2) == springs).all(), f"{path}: springs"
+            left.clear()
         else:
             assert left.issuperset(chosen)
             left.difference_update(chosen)
@@ -97,10 +112,10 @@ def check(path, archive, frame_time, shown):
 
 
 def main():
-    archive, frame_time, shown, *paths = sys.argv[1:]
-    archive = np.load(archive)
+    run, frame_time, shown, *paths = sys.argv[1:]
+    archive = np.load(run)
     for path in paths:
-        check(path, archive, float(frame_time), shown)
+        check(path, run, archive, float(frame_time), shown)
 
 
 main()

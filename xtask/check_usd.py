@@ -3,12 +3,15 @@
     python check_usd.py RUN.npz TITLE UP UNITS_PER_METRE FRAME_TIME FILE...
 
 Every vertex of every time sample must have the archive's bits, metadata must be there and right, and OpenUSD's own validators
-must have nothing to say. `primvars:point` says which point a vertex is; points that no surface has may be missing.
+must have nothing to say. `primvars:point` says which point a vertex is; points that no surface has may be missing. A prim without
+it is a mesh that points carry along, and held against RUN.NNNN.ply, written with the same options.
 """
 
 import sys
+from pathlib import Path
 
 import numpy as np
+import run_ply
 from pxr import Sdf, Usd, UsdGeom, UsdValidation
 
 TURNED = {"Y": lambda v: v, "Z": lambda v: np.stack([v[..., 0], -v[..., 2], v[..., 1]], axis=-1)}
@@ -48,7 +51,7 @@ def check_normals(mesh, points, time, what):
     assert (off[clear] <= tolerance[clear]).all(), f"{what}: normals are off by {off[clear].max()}"
 
 
-def check(path, archive, title, up, scale, frame_time):
+def check(path, run, archive, title, up, scale, frame_time):
     stage = Usd.Stage.Open(path)
     frames, points, _ = archive["positions"].shape
     assert UsdGeom.GetStageUpAxis(stage) == up
@@ -63,8 +66,9 @@ def check(path, archive, title, up, scale, frame_time):
     scaled = np.float32(scale)
     positions, velocities = (TURNED[up](archive[name]) * scaled for name in ("positions", "velocities"))
     codes = [float(frame) for frame in range(frames)]
-    left, vertices = set(range(points)), 0
+    left, vertices, carried = set(range(points)), 0, 0
     for prim in root.GetChildren():
+        motion = positions, velocities
         based = UsdGeom.PointBased(prim)
         for attribute in (based.GetPointsAttr(), based.GetVelocitiesAttr(), based.GetExtentAttr()):
             assert attribute.GetTimeSamples() == codes, f"{prim.GetPath()}: {attribute.GetTimeSamples()}"
@@ -75,6 +79,13 @@ def check(path, archive, title, up, scale, frame_time):
             ends = archive["springs"].reshape(-1)
             assert (np.array(UsdGeom.Curves(prim).GetCurveVertexCountsAttr().Get()) == 2).all()
             chosen = ends
+        elif not UsdGeom.PrimvarsAPI(prim).HasPrimvar("point"):
+            shown = run_ply.Sequence(Path(run).with_suffix(""), positions, velocities)
+            motion = shown.positions, shown.velocities
+            # The .ply has them all in the order of the bodies.
+            chosen = np.flatnonzero(shown.point < 0)[carried:][: len(sample(based.GetPointsAttr(), 0))]
+            carried += len(chosen)
+            left.clear()
         else:
             chosen = np.array(UsdGeom.PrimvarsAPI(prim).GetPrimvar("point").Get())
             assert (np.diff(chosen) > 0).all() and left.issuperset(chosen), f"{prim.GetPath()}: {chosen}"
@@ -82,8 +93,8 @@ def check(path, archive, title, up, scale, frame_time):
         for frame in range(frames):
             what = f"{path}{prim.GetPath()} at {frame}"
             found = sample(based.GetPointsAttr(), frame)
-            same(found, positions[frame, chosen], what)
-            same(sample(based.GetVelocitiesAttr(), frame), velocities[frame, chosen], what)
+            same(found, motion[0][frame, chosen], what)
+            same(sample(based.GetVelocitiesAttr(), frame), motion[1][frame, chosen], what)
             low, high = sample(based.GetExtentAttr(), frame)
             margin = 0
             if not prim.IsA(UsdGeom.Mesh):
@@ -96,7 +107,7 @@ def check(path, archive, title, up, scale, frame_time):
             vertices += len(found)
     check_rules(stage, path, title)
     inside = f"; {len(left)} points lie inside" if left else ""
-    print(f"{path}: {vertices} vertices in {frames} time samples have the bits of the archive{inside}")
+    print(f"{path}: {vertices} vertices in {frames} time samples have the bits of the run{inside}")
 
 
 def check_rules(stage, path, title):
@@ -109,10 +120,10 @@ def check_rules(stage, path, title):
 
 
 def main():
-    archive, title, up, scale, frame_time, *paths = sys.argv[1:]
-    archive = np.load(archive)
+    run, title, up, scale, frame_time, *paths = sys.argv[1:]
+    archive = np.load(run)
     for path in paths:
-        check(path, archive, title, up, float(scale), float(frame_time))
+        check(path, run, archive, title, up, float(scale), float(frame_time))
 
 
 main()

@@ -115,14 +115,21 @@ pub fn python() -> Outcome {
     run(program(python, &["xtask/check_outputs.py", &table, &archive]).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Two scenes to every format of geometry, in both axes and with and without springs: other people's readers must find each
+/// A soft body whose surface is a mesh that its points carry along: vertices that are no points.
+pub const PEBBLE: &str = "examples/pebble.toml";
+
+/// Three scenes to every format of geometry, in both axes and with and without springs: other people's readers must find each
 /// vertex where the archive of the same run has it.
 pub fn exports() -> Outcome {
     let python = python_with("venv-exports", "python3", &["numpy", "scipy", "meshio", "trimesh", "vtk"])?;
     let formats = ["npz", "pc2", "mdd", "obj", "ply", "pvd"];
-    for (scene, up, scale, springs) in
-        [("jelly", "y", "1", "lines"), ("cloth", "z", "100", "lines"), ("jelly", "z", "0.01", "none")]
-    {
+    for (scene, up, scale, springs) in [
+        ("jelly", "y", "1", "lines"),
+        ("cloth", "z", "100", "lines"),
+        ("jelly", "z", "0.01", "none"),
+        (PEBBLE, "y", "1", "lines"),
+        (PEBBLE, "z", "100", "none"),
+    ] {
         let folder = fresh_folder("exports-check")?;
         let mut command = sprung(&["run", scene, "--frames", "12", "--quiet", "--up", up, "--scale", scale]);
         run(command.args(["--springs", springs]).args(outputs_in(&folder, &formats)))?;
@@ -133,14 +140,14 @@ pub fn exports() -> Outcome {
     Ok(())
 }
 
-/// Two scenes into Blender itself: as meshes, and as caches that move a mesh. It is a Python module for one version of
+/// Three scenes into Blender itself: as meshes, and as caches that move a mesh. It is a Python module for one version of
 /// Python alone; where that is not installed, this says so.
 pub fn blender() -> Outcome {
     if !succeeds(&mut program("python3.11", &["--version"])) {
         return Err("Blender's Python module needs Python 3.11, and there is no python3.11".to_owned());
     }
     let python = python_with("venv-blender", "python3.11", &["bpy==4.5.*"])?;
-    for scene in ["jelly", "cloth"] {
+    for scene in ["jelly", "cloth", PEBBLE] {
         let folder = fresh_folder("blender-check")?;
         let mut command = sprung(&["run", scene, "--fps", "24", "--frames", "24", "--quiet", "--up", "z"]);
         run(command.args(outputs_in(&folder, &["npz", "pc2", "mdd", "obj", "ply"])))?;
@@ -230,13 +237,16 @@ pub fn fuzz() -> Outcome {
     fuzz_one("scene", &seeds, &["-dict=scene.dict", "-max_len=4096"], scenes)?;
 
     let seeds = fresh_folder("fuzz-seeds-checkpoint")?;
-    let digits = fs::read_to_string(root().join("crates/sprung-io/tests/checkpoints/version-1.hex"));
-    let digits = digits.map_err(|error| format!("version-1.hex cannot be read: {error}"))?;
-    let digits: Vec<char> = digits.chars().filter(char::is_ascii_hexdigit).collect();
-    let byte = |pair: &[char]| u8::from_str_radix(&pair.iter().collect::<String>(), 16).unwrap_or(0);
-    let bytes: Vec<u8> = digits.chunks(2).map(byte).collect();
-    fs::write(seeds.join("version-1"), bytes)
-        .map_err(|error| format!("a seed cannot be written: {error}"))?;
+    for version in ["version-1", "version-2"] {
+        let path = root().join("crates/sprung-io/tests/checkpoints").join(version).with_extension("hex");
+        let digits =
+            fs::read_to_string(&path).map_err(|error| format!("{version}.hex cannot be read: {error}"))?;
+        let digits: Vec<char> = digits.chars().filter(char::is_ascii_hexdigit).collect();
+        let byte = |pair: &[char]| u8::from_str_radix(&pair.iter().collect::<String>(), 16).unwrap_or(0);
+        let bytes: Vec<u8> = digits.chunks(2).map(byte).collect();
+        fs::write(seeds.join(version), bytes)
+            .map_err(|error| format!("a seed cannot be written: {error}"))?;
+    }
     fuzz_one("checkpoint", &seeds, &["-max_len=8192"], checkpoints)
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A reader takes bytes and gives a [`Mesh`]; it never trusts a count that the bytes do not bear out. Whatever the bytes are, it
 //! takes time and memory in proportion to them, and ends with a mesh or with one sentence that names the place. Formats that were
-//! made for more than meshes are read as far as meshes go. The readers are our own, and small: of the crates there are, one
-//! reorders vertices, some take memory for whatever a header says, and some panic on files that were cut.
+//! made for more than meshes are read as far as meshes go. The readers are our own, and small, so that every count is checked
+//! before memory is taken for it.
 
 mod bytes;
 mod folder;
