@@ -30,6 +30,9 @@ pub struct Running {
     pub simulation: Simulation,
 }
 
+/// Brings a simulation.
+pub type Bring = dyn Fn(&Options) -> Result<Running> + Send + Sync;
+
 /// A simulation that somebody else knows how to bring, such as one in a file.
 #[derive(Clone)]
 pub struct Kept {
@@ -37,7 +40,7 @@ pub struct Kept {
     pub name: String,
     /// Brings it. As that may take a while, the driver asks for it where it works itself; the options say how much memory
     /// may be taken.
-    pub bring: Arc<dyn Fn(&Options) -> Result<Running> + Send + Sync>,
+    pub bring: Arc<Bring>,
 }
 
 impl fmt::Debug for Kept {

@@ -41,7 +41,7 @@ mod thread;
 mod timeline;
 mod undo;
 
-pub use command::{Beginning, Command, Edit, Fix, Kept, Pace, Probe, Pull, Running, Source};
+pub use command::{Beginning, Bring, Command, Edit, Fix, Kept, Pace, Probe, Pull, Running, Source};
 pub use driver::Driver;
 pub use handle::Handle;
 pub use options::{DEFAULT_HISTORY_BYTES, Options};
