@@ -168,16 +168,11 @@ fn running(saved: Result<Saved>, file: &str, options: &Options) -> Result<Runnin
 /// Writes a checkpoint of the open scene, and gives its size.
 ///
 /// # Errors
-/// As [`write`], if the file belongs to a run that is still going, and for a scene with bodies made from mesh files.
+/// As [`write`], and if the file belongs to a run that is still going.
 pub fn write_checkpoint(path: &Path, report: &Report, checkpoint: &Checkpoint) -> Result<u64> {
     checkpoint::check_name(path)?;
     let opened = &report.opened;
     let saved = Saved::of(&opened.name, &opened.scene, &opened.model, checkpoint.clone());
-    // What could not be gone on with is not to be taken for something saved.
-    if saved.scene()?.waits_for_meshes() {
-        let sentence = "cannot hold this scene: some of its bodies are made from mesh files, which a checkpoint does not keep";
-        return Err(Error::new(Code::Unsupported, sentence).in_file(path.display().to_string()));
-    }
     Keeper::begin(path)?.write(&saved)
 }
 

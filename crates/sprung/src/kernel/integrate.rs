@@ -33,11 +33,12 @@ impl Response {
     #[inline(always)]
     pub fn new(inverse_mass: &Lanes, field: Field<'_>) -> Self {
         let mut response = Self { per_force: [0.0; LANES], fall: [[0.0; LANES]; 3] };
-        let fall = (field.gravity * field.dt).to_array();
-        for lane in 0..LANES {
-            response.per_force[lane] = inverse_mass[lane] * field.dt;
-            for axis in 0..3 {
-                response.fall[axis][lane] = if inverse_mass[lane] > 0.0 { fall[axis] } else { 0.0 };
+        for (per_force, inverse_mass) in response.per_force.iter_mut().zip(inverse_mass) {
+            *per_force = inverse_mass * field.dt;
+        }
+        for (fall, along) in response.fall.iter_mut().zip((field.gravity * field.dt).to_array()) {
+            for (fall, &inverse_mass) in fall.iter_mut().zip(inverse_mass) {
+                *fall = if inverse_mass > 0.0 { along } else { 0.0 };
             }
         }
         response
@@ -93,7 +94,7 @@ impl Doubt {
 
     /// Whether all positions are finite.
     #[inline(always)]
-    pub fn is_cleared(mut self) -> bool {
+    pub fn finds_all_finite(mut self) -> bool {
         // By halves: in a sum from lane to lane each would wait for the one before.
         let mut half = LANES / 2;
         while half > 0 {

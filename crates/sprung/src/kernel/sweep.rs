@@ -66,7 +66,7 @@ impl Work for Sweep<'_> {
                 self.points(block, far, &mut doubt);
             }
         }
-        doubt.is_cleared()
+        doubt.finds_all_finite()
     }
 }
 
