@@ -2,8 +2,20 @@
 //!
 //! A reader takes bytes and gives a [`Mesh`]; it never trusts a count that the bytes do not bear out. Whatever the bytes are, it
 //! takes time and memory in proportion to them, and ends with a mesh or with one sentence that names the place. Formats that were
-//! made for more than meshes are read as far as meshes go. The readers are our own, and small, so that every count is checked
-//! before memory is taken for it.
+//! made for more than meshes are read as far as meshes go.
+//!
+//! glTF is read by a library, between checks of our own. The other readers are our own, and small. What was found of the libraries
+//! that there are, each tried on whole, hostile and 20 000 damaged files, with the overflow of numbers checked:
+//! - OBJ, `tobj` 4.0.5: of five vertices with `f 4 2 1` it gives three, in that order, as float32; refuses a face that goes on after
+//!   a backslash; has no lines in its errors; three panics.
+//! - PLY, `ply-rs-bw` 4.0.1, as `ply-rs` 0.1.3 of 2020: ended by a file of 72 bytes, which counts elements without properties, at 5 GB of
+//!   memory; else 27 times the file; refuses a comment that is not UTF-8, and says only "couldn't read" of `nan`.
+//! - STL, `stl_io` 0.11.0: of a text with two solids it gives the first, and no word of the other; has no names of solids, and
+//!   no lines in its errors.
+//! - VTK, `vtkio` 0.7.0-rc2: refuses a mesh whose point data are cut, which is of no concern here; says "Parse error: Complete" of
+//!   that and of too large a count alike, with no place.
+//! - Gmsh, `mshio` 0.4.2 of 2020: version 4.1 only, without physical groups; six panics, two of which no check of overflow makes.
+//! - USD, `openusd` 0.6.0: one damaged byte in 1420 makes it ask for 3·10¹⁸ bytes, which ends the process.
 
 mod bytes;
 mod folder;

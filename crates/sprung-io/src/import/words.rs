@@ -98,7 +98,8 @@ pub(super) fn float(word: &[u8]) -> Option<f64> {
 
 /// The beginning of a word, as it can be shown.
 pub(super) fn quoted(word: &[u8]) -> String {
-    let text = String::from_utf8_lossy(word);
+    // No more of it than can be shown: it may be as long as the file, and be asked for often.
+    let text = String::from_utf8_lossy(&word[..word.len().min(4 * QUOTED + 4)]);
     let short: String = text.chars().take(QUOTED).collect();
     let short: String = short
         .chars()

@@ -74,37 +74,80 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "a.stl: is neither an STL text, which begins with \"solid\", nor long enough for a binary STL",
     ),
     ("a.gltf", "{", "a.gltf:1:1: is not valid glTF: EOF while parsing an object"),
-    ("a.gltf", "{\"scene\": 3}", "a.gltf: scene: is a scene that is not there"),
     (
         "a.gltf",
-        "{\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"children\": [0]}]}",
+        "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 3}",
+        "a.gltf: scene: is a scene that is not there",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"children\": [0]}]}",
         "a.gltf: nodes[0]: lies within itself, or too deeply within others",
     ),
     (
         "a.gltf",
-        "{\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 1}]}",
-        "a.gltf: meshes[1]: is named, and there are 0 meshes",
+        "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 1}]}",
+        "a.gltf: nodes[0].mesh: is a mesh that is not there",
     ),
     (
         "a.gltf",
-        "{\"buffers\": [{\"uri\": \"gone.bin\", \"byteLength\": 3}]}",
+        "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": \"gone.bin\", \"byteLength\": 3}]}",
         "gone.bin: there is no such file",
     ),
     (
         "a.gltf",
-        "{\"buffers\": [{\"uri\": \"data:;base64,AAA=\", \"byteLength\": 3}]}",
+        "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": \"data:;base64,AAA=\", \"byteLength\": 3}]}",
         "a.gltf: buffers[0]: says 3 bytes, and has 2",
     ),
     (
         "a.gltf",
-        "{\"extensionsRequired\": [\"KHR_draco_mesh_compression\"]}",
+        "{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_draco_mesh_compression\"]}",
         "a.gltf: needs the extension \"KHR_draco_mesh_compression\", which is not read; export it without compression",
     ),
     (
         "a.gltf",
-        "{\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}]}",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"componentType\": 5126, \"count\": 4000000000, \"type\": \"VEC3\"}]}",
         "a.gltf: accessors[0]: has no bufferView and more than a million entries",
     ),
+    ("a.gltf", "{}", "a.gltf:1:2: is not valid glTF: missing field `asset`"),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 9}}]}]}",
+        "a.gltf: meshes[0]: has positions that are not there",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {}, \"mode\": 9}]}]}",
+        "a.gltf: meshes[0].primitives[0].mode: has a value that glTF does not have",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"componentType\": 5121, \"count\": 1, \"type\": \"VEC3\"}]}",
+        "a.gltf: accessors[0]: must be VEC3 of float32, as it is used for positions",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"buffers\": [{\"uri\": \"buf%20fer.bin\", \"byteLength\": 88}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 89, \"byteStride\": 12}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 1}]}",
+        "a.gltf: bufferViews[0]: reaches beyond its buffer",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"buffers\": [{\"uri\": \"buf%20fer.bin\", \"byteLength\": 88}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48, \"byteStride\": 4}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 1}]}",
+        "a.gltf: bufferViews[0]: has a byteStride of 4, and entries of 12 bytes",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"buffers\": [{\"uri\": \"buf%20fer.bin\", \"byteLength\": 88}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48, \"byteStride\": 12}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 5}]}",
+        "a.gltf: accessors[0]: says that it has 5 entries, and has only 48 bytes for them",
+    ),
+    (
+        "a.gltf",
+        "{\"asset\": {\"version\": \"2.0\"}, \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}], \"buffers\": [{\"uri\": \"buf%20fer.bin\", \"byteLength\": 88}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48, \"byteStride\": 12}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4, \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": 0, \"byteOffset\": 15, \"componentType\": 5121}, \"values\": {\"bufferView\": 0}}}]}",
+        "a.gltf: accessors[0]: replaces entries that are not there, or not in their order",
+    ),
+    ("a.glb", "glTF\x02\0\0\0\x01\0\0\0", "a.glb: is cut short: it has no whole head of a binary glTF"),
+    ("a.glb", "glTF\x02\0\0\0\x10\0\0\0", "a.glb: is cut short: it says 4 bytes after its head, and has 0"),
+    ("a.glb", "glTF\x01\0\0\0\x0c\0\0\0", "a.glb: is a binary glTF of version 1, and 2 is read"),
     ("a.usda", "#usda 1.0\n", "a.usda: has no prim of the type Mesh with points"),
     (
         "a.usda",
@@ -155,6 +198,14 @@ fn every_broken_file_gets_its_sentence() {
         let error = read_mesh(text.as_bytes(), file, &mut companion).expect_err(text);
         assert_eq!(error.to_string(), *sentence, "{file}:\n{text}");
     }
+}
+
+/// Each of these nodes takes a hundred times as much memory as it has bytes.
+#[test]
+fn a_gltf_of_too_many_things_is_refused() {
+    let text = format!("{{\"nodes\": [{}]}}", "{},".repeat(2_500_000));
+    let error = read_mesh(text.as_bytes(), "a.gltf", &mut companion).unwrap_err();
+    assert_eq!(error.to_string(), "a.gltf: describes more than 5000000 things");
 }
 
 /// Cut anywhere, a binary file is noticed, and nothing worse happens; a text may be whole without its last line.
