@@ -5,6 +5,7 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -39,6 +40,11 @@ fn enter(window: &mut Window, path: &Path) {
     window.event(egui::Event::Text(path.display().to_string()));
     window.run_steps(1);
     window.key_press(Key::Enter);
+    window.run_steps(3);
+}
+
+fn choose(window: &mut Window, label: &str) {
+    window.get_by_role_and_label(Role::RadioButton, label).click();
     window.run_steps(3);
 }
 
@@ -180,13 +186,13 @@ fn the_card_chooses_what_is_saved() {
     let mut window = under_way("chain");
     press(&mut window, Action::Save);
     assert!(window.get_all_by_value("my-chain.toml").count() > 0);
-    click(&mut window, "Checkpoint");
+    choose(&mut window, "Checkpoint");
     assert!(window.get_all_by_value("my-chain.sprung").count() > 0);
     assert!(report(&window).checkpoint.is_some());
-    click(&mut window, "Scene");
+    choose(&mut window, "Scene");
     assert!(window.get_all_by_value("my-chain.toml").count() > 0);
     assert!(report(&window).checkpoint.is_none());
-    click(&mut window, "Checkpoint");
+    choose(&mut window, "Checkpoint");
     // Closed without: nothing is kept.
     window.key_press(Key::Escape);
     window.run_steps(3);
