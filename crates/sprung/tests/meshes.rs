@@ -186,6 +186,7 @@ fn what_was_changed_is_saved_spring_by_spring() {
     let saved = scene.with_params(simulation.model(), &params).unwrap();
     let cloth = saved.bodies[0].cloth.as_ref().unwrap();
     assert_eq!((cloth.except.len(), cloth.cut.len(), cloth.stiffness), (2, 1, 50.0));
+    assert_eq!(cloth.density, None, "the masses of the points are said instead");
     let again = loaded(&saved.to_toml(), &mesh).unwrap();
     assert_eq!(again, saved);
     let (model, found, _) = again.build().unwrap();
@@ -260,4 +261,21 @@ fn a_material_is_set_by_its_own_key_and_never_as_if_it_were_a_spring() {
     let mut scene = loaded(&line.replace("line", "cloth"), &mesh).unwrap();
     scene.set("body.cloth.stiffness", "8").unwrap();
     assert_eq!(scene.bodies[0].springs[0].stiffness, 8.0);
+}
+
+#[test]
+fn a_density_besides_masses_is_refused() {
+    for material in
+        ["cloth = { density = 0.4, stiffness = 150 }", "soft = { density = 900, spacing = 1, stiffness = 5 }"]
+    {
+        for mass in ["point_mass", "body_mass"] {
+            let text = format!("[[body]]\nname = \"towel\"\nmesh = \"m\"\n{mass} = 2\n{material}\n");
+            let error = Scene::parse(&text, "mesh.toml").unwrap_err().to_string();
+            let exact = format!("density: is said besides the body's {mass}; one of them is enough");
+            assert!(error.contains(&exact), "{error}");
+        }
+    }
+    let text = "[[body]]\nname = \"towel\"\nmesh = \"m\"\npoint_mass = 2\ncloth = { stiffness = 150 }\n";
+    let (_, params, _) = loaded(text, &sheet(2)).unwrap().build().unwrap();
+    assert!(params.point_mass.iter().all(|&mass| mass == 2.0));
 }

@@ -101,7 +101,7 @@ impl JsonSchema for MeshFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cloth {
-    /// Mass of a square metre, kg/m². Say this or the body's `body_mass`.
+    /// Mass of a square metre, kg/m². Say this or the body's `body_mass` or `point_mass`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<f64>,
@@ -139,7 +139,7 @@ pub struct Soft {
     /// Distance of neighbouring points, m.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub spacing: f64,
-    /// Mass of a cubic metre, kg/m³. Say this or the body's `body_mass`.
+    /// Mass of a cubic metre, kg/m³. Say this or the body's `body_mass` or `point_mass`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<f64>,
