@@ -186,6 +186,7 @@ fn what_was_changed_is_saved_spring_by_spring() {
     let saved = scene.with_params(simulation.model(), &params).unwrap();
     let cloth = saved.bodies[0].cloth.as_ref().unwrap();
     assert_eq!((cloth.except.len(), cloth.cut.len(), cloth.stiffness), (2, 1, 50.0));
+    assert_eq!(cloth.density, None, "the masses of the points are said instead");
     let again = loaded(&saved.to_toml(), &mesh).unwrap();
     assert_eq!(again, saved);
     let (model, found, _) = again.build().unwrap();
@@ -215,4 +216,66 @@ fn a_changed_scene_keeps_its_mesh_and_is_made_anew() {
     let error = scene.build().unwrap_err();
     let exact = "--set body.cloth.mesh=\"other.obj\": body[0].mesh: is \"other.obj\", which has not been read; open the scene's file, so that its folder is known";
     assert_eq!(error.to_string(), exact);
+}
+
+#[test]
+fn a_material_is_set_by_its_own_key_and_never_as_if_it_were_a_spring() {
+    let mesh = sheet(2);
+    let body =
+        |name: &str, material: &str| format!("[[body]]\nname = \"{name}\"\nmesh = \"m\"\n{material}\n");
+    let towel = body("towel", "cloth = { density = 0.4, stiffness = 150, damping = 0.02 }");
+    let line = "[[body]]\nname = \"line\"\npoints = [[0, 0, 0], [1, 0, 0]]\n\
+                springs = [{ pairs = [[0, 1]], stiffness = 7 }]\n";
+    let text = format!("{towel}{}{line}", body("veil", "net = { stiffness = 10 }"));
+    let mut scene = loaded(&text, &mesh).unwrap();
+
+    let before = scene.build().unwrap().1.spring_stiffness.clone();
+    scene.set("body.towel.cloth.stiffness", "300").unwrap();
+    scene.set("body.0.cloth.damping", "0.1").unwrap();
+    scene.set("body.veil.net.damping", "0.5").unwrap();
+    let cloth = scene.bodies[0].cloth.clone().unwrap();
+    assert_eq!((cloth.stiffness, cloth.damping), (300.0, 0.1));
+    let after = scene.build().unwrap().1.spring_stiffness.clone();
+    assert_eq!(after[0], 2.0 * before[0], "the springs follow from the material");
+
+    // A net's springs are springs; bodies that are no cloth are passed over.
+    scene.set("body.veil.stiffness", "20").unwrap();
+    scene.set("body.cloth.stiffness", "200").unwrap();
+    let net = scene.bodies[1].net.clone().unwrap();
+    assert_eq!((net.stiffness, net.damping, net.rest_scale), (20.0, 0.5, 1.0));
+    assert_eq!(scene.bodies[0].cloth.as_ref().unwrap().stiffness, 200.0);
+    scene.set("rest_scale", "0.9").unwrap();
+    assert_eq!(scene.bodies[0].cloth.as_ref().unwrap().rest_scale, 0.9);
+    assert_eq!(scene.bodies[1].net.as_ref().unwrap().rest_scale, 0.9);
+
+    for key in ["stiffness", "damping", "body.stiffness", "body.towel.damping", "body.0.stiffness"] {
+        let error = scene.set(key, "500").unwrap_err().to_string();
+        let short = key.rsplit('.').next().unwrap();
+        assert!(error.contains("\"towel\" is cloth, a material"), "{error}");
+        assert!(error.contains(&format!("write body.towel.cloth.{short} for it")), "{error}");
+    }
+    let error = scene.set("body.veil.cloth.stiffness", "1").unwrap_err().to_string();
+    assert!(error.contains("has no cloth"), "{error}");
+
+    // A body may be called what a material is called.
+    let mut scene = loaded(&line.replace("line", "cloth"), &mesh).unwrap();
+    scene.set("body.cloth.stiffness", "8").unwrap();
+    assert_eq!(scene.bodies[0].springs[0].stiffness, 8.0);
+}
+
+#[test]
+fn a_density_besides_masses_is_refused() {
+    for material in
+        ["cloth = { density = 0.4, stiffness = 150 }", "soft = { density = 900, spacing = 1, stiffness = 5 }"]
+    {
+        for mass in ["point_mass", "body_mass"] {
+            let text = format!("[[body]]\nname = \"towel\"\nmesh = \"m\"\n{mass} = 2\n{material}\n");
+            let error = Scene::parse(&text, "mesh.toml").unwrap_err().to_string();
+            let exact = format!("density: is said besides the body's {mass}; one of them is enough");
+            assert!(error.contains(&exact), "{error}");
+        }
+    }
+    let text = "[[body]]\nname = \"towel\"\nmesh = \"m\"\npoint_mass = 2\ncloth = { stiffness = 150 }\n";
+    let (_, params, _) = loaded(text, &sheet(2)).unwrap().build().unwrap();
+    assert!(params.point_mass.iter().all(|&mass| mass == 2.0));
 }

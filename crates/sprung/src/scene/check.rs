@@ -223,19 +223,24 @@ fn check_mesh(path: &str, body: &Body) -> Result<()> {
     check_exceptions(&format!("{path}.{}", body.material_key()), cut, except)
 }
 
-/// The mass of a material: its density, or the body's mass. Masses for each point may be said besides, and then count.
+/// The mass of a material: its density, or the body's mass, or that of each point.
 fn density(field: &str, value: Option<f64>, unit: &str, body: &Body) -> Result<()> {
-    match (value, body.body_mass) {
-        (Some(_), Some(_)) => {
-            let sentence = "is said besides the body's body_mass; one of them is enough";
+    let other = match (&body.body_mass, &body.point_mass) {
+        (Some(_), _) => Some("body_mass"),
+        (None, Some(_)) => Some("point_mass"),
+        (None, None) => None,
+    };
+    match (value, other) {
+        (Some(_), Some(other)) => {
+            let sentence = format!("is said besides the body's {other}; one of them is enough");
             Err(Error::new(Code::Conflict, sentence).at_field(field))
         }
         (Some(value), None) => number(field.to_owned(), value, &DENSITY_RANGE, unit),
-        (None, None) if body.point_mass.is_none() => {
+        (None, None) => {
             let sentence = "is missing; say how heavy the material is, or the body's body_mass";
             Err(Error::new(Code::MissingField, sentence).at_field(field))
         }
-        (None, _) => Ok(()),
+        (None, Some(_)) => Ok(()),
     }
 }
 

@@ -15,7 +15,9 @@ use super::check::{MAX_POINTS, check};
 use super::choices::Numbers;
 use super::suggest::shortened;
 use super::types::{Body, Exception, Scene};
-use crate::build::mesh::{ClothMaterial, Mesh, MeshBody, NetMaterial, SoftMaterial, cloth, net, soft_body};
+use crate::build::mesh::{
+    ClothMaterial, Mesh, MeshBody, NetMaterial, SoftMaterial, cloth, net, soft_body_within,
+};
 use crate::error::{Code, Error, Result};
 
 /// A mesh file, by its path from the folder of the scene file.
@@ -99,7 +101,7 @@ impl JsonSchema for MeshFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cloth {
-    /// Mass of a square metre, kg/m². Say this or the body's `body_mass`.
+    /// Mass of a square metre, kg/m². Say this or the body's `body_mass` or `point_mass`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<f64>,
@@ -137,7 +139,7 @@ pub struct Soft {
     /// Distance of neighbouring points, m.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub spacing: f64,
-    /// Mass of a cubic metre, kg/m³. Say this or the body's `body_mass`.
+    /// Mass of a cubic metre, kg/m³. Say this or the body's `body_mass` or `point_mass`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<f64>,
@@ -260,7 +262,7 @@ impl Recipe {
         Some(Self { scale: body.scale, material })
     }
 
-    fn make(&self, mesh: &Mesh) -> Result<MeshBody> {
+    fn make(&self, mesh: &Mesh, most_springs: u64) -> Result<MeshBody> {
         let scaled;
         let mesh = if self.scale == 1.0 {
             mesh
@@ -270,7 +272,7 @@ impl Recipe {
         };
         match &self.material {
             Material::Cloth(material) => cloth(mesh, material),
-            Material::Soft(material) => soft_body(mesh, material),
+            Material::Soft(material) => soft_body_within(mesh, material, most_springs),
             Material::Net(material) => net(mesh, material),
         }
     }
@@ -325,10 +327,10 @@ impl Body {
         }
     }
 
-    /// Makes of a mesh what the body says now.
-    fn load(&mut self, path: &str, mesh: &Arc<Mesh>) -> Result<()> {
+    /// Makes of a mesh what the body says now, in a scene of so many springs at most.
+    fn load(&mut self, path: &str, mesh: &Arc<Mesh>, most_springs: u64) -> Result<()> {
         let (Some(recipe), Some(file)) = (Recipe::of(self), &self.mesh) else { return Ok(()) };
-        let made = recipe.make(mesh).map_err(|error| {
+        let made = recipe.make(mesh, most_springs).map_err(|error| {
             // Either a value of the material will not do, or the mesh is at fault.
             let at_fault = match error.place().field.as_deref() {
                 Some(key) => Error::new(error.code(), error.sentence())
@@ -420,7 +422,7 @@ impl Scene {
     fn load_shared(&mut self, read: &mut dyn FnMut(&str) -> Result<Arc<Mesh>>) -> Result<Vec<String>> {
         let mut meshes: Vec<(String, Arc<Mesh>)> = Vec::new();
         let mut warnings = Vec::new();
-        let origin = self.origin.clone();
+        let (origin, most_springs) = (self.origin.clone(), self.spring_limit());
         for (index, body) in self.bodies.iter_mut().enumerate() {
             let Some(MeshFile { file, .. }) = body.mesh.clone() else { continue };
             let mesh = match meshes.iter().find(|(name, _)| *name == file) {
@@ -431,7 +433,8 @@ impl Scene {
                     mesh
                 }
             };
-            body.load(&format!("body[{index}]"), &mesh).map_err(|error| origin.locate(error))?;
+            body.load(&format!("body[{index}]"), &mesh, most_springs)
+                .map_err(|error| origin.locate(error))?;
             let said = body.made().map_or(&[][..], |made| &made.warnings);
             warnings.extend(
                 said.iter().map(|sentence| format!("{} ({}): {sentence}", body.name, shortened(&file))),
@@ -463,10 +466,11 @@ impl Scene {
     }
 
     fn remake_meshes(&mut self) -> Result<()> {
+        let most_springs = self.spring_limit();
         for (index, body) in self.bodies.iter_mut().enumerate().filter(|(_, body)| body.is_out_of_date()) {
             let read = std::mem::take(&mut body.loaded);
             if let Some(read) = read.0 {
-                body.load(&format!("body[{index}]"), &read.mesh)?;
+                body.load(&format!("body[{index}]"), &read.mesh, most_springs)?;
             }
         }
         Ok(())

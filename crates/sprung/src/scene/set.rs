@@ -20,7 +20,9 @@ impl Scene {
     /// Changes one value. The key is a path such as `dt`, `plane.y` or `body.jelly.springs.0.stiffness`; where there are
     /// several of a thing, the next part may be an index (from 0), a body's name, or be left out to mean all of them.
     /// `stiffness`, `damping` and `rest_scale` alone mean those of all springs, after a body (`body.jelly.stiffness`) those
-    /// of all its springs. The value is written as in a scene file; a single word needs no quotes.
+    /// of all its springs, a net's too. Cloth and soft bodies are of a material with units of its own: there `stiffness` and
+    /// `damping` alone are refused, and `body.towel.cloth.stiffness` says what is meant. The value is written as in a scene
+    /// file; a single word needs no quotes.
     ///
     /// ```
     /// # use sprung::scene::Scene;
@@ -61,17 +63,21 @@ impl Scene {
                 return Err(Error::new(Code::Syntax, sentence));
             }
             [key] if SHORTHANDS.contains(&key) => {
-                for owner in [&["body", "springs", key][..], &["joint", key]] {
-                    match put_in_table(&mut table, owner, &value, "", &mut fields) {
-                        Err(error) if error.code() != Code::NotFound => return Err(error),
-                        _ => {} // a scene without joints, say
-                    }
+                self.refuse_for_materials(key, None)?;
+                let _ = put_in_springs(&mut table, &["body"], key, &value, &mut fields)?;
+                match put_in_table(&mut table, &["joint", key], &value, "", &mut fields) {
+                    Err(error) if error.code() != Code::NotFound => return Err(error),
+                    _ => {} // a scene without joints, say
                 }
             }
-            ["body", .., key] if SHORTHANDS.contains(&key) && !steps.contains(&"springs") => {
-                let mut steps = steps.clone();
-                steps.insert(steps.len() - 1, "springs");
-                put_in_table(&mut table, &steps, &value, "", &mut fields)?;
+            ["body", key] if SHORTHANDS.contains(&key) => {
+                self.refuse_for_materials(key, None)?;
+                put_in_springs(&mut table, &["body"], key, &value, &mut fields)?.map_or(Ok(()), Err)?;
+            }
+            ["body", which, key] if SHORTHANDS.contains(&key) && self.is_body(which) => {
+                self.refuse_for_materials(key, Some(which))?;
+                put_in_springs(&mut table, &["body", which], key, &value, &mut fields)?
+                    .map_or(Ok(()), Err)?;
             }
             [key] if !keys_of::<Self>().contains(&key) => return Err(unknown_key(key)),
             _ => put_in_table(&mut table, &steps, &value, "", &mut fields)?,
@@ -90,6 +96,62 @@ impl Scene {
         scene.origin = self.origin.with_overrides(&fields, argument);
         Ok(scene)
     }
+
+    /// Whether a step after `body` is an index or a body's name.
+    fn is_body(&self, step: &str) -> bool {
+        step.parse::<usize>().is_ok() || self.bodies.iter().any(|body| body.name == step)
+    }
+
+    /// A material's stiffness and damping have other units than those of springs: one number cannot be meant for both.
+    fn refuse_for_materials(&self, key: &str, which: Option<&str>) -> Result<()> {
+        if key == "rest_scale" {
+            return Ok(());
+        }
+        let is_meant = |index: usize, body: &Body| match which.map(|step| (step, step.parse::<usize>())) {
+            None => true,
+            Some((_, Ok(wanted))) => index == wanted,
+            Some((name, Err(_))) => body.name == name,
+        };
+        let found = self.bodies.iter().enumerate().find_map(|(index, body)| {
+            let unit = match (&body.cloth, &body.soft, key) {
+                (None, None, _) => return None,
+                (.., "damping") => "s",
+                (Some(_), ..) => "N/m of a strip as wide as long",
+                _ => "Pa",
+            };
+            is_meant(index, body).then(|| (body, body.material_key(), unit))
+        });
+        let Some((body, kind, unit)) = found else { return Ok(()) };
+        let name = shortened(&body.name);
+        let sentence =
+            format!("is that of springs, and \"{name}\" is {kind}, a material with a {key} in {unit}");
+        let fix = format!(
+            "write body.{name}.{kind}.{key} for it, and body.springs.{key} or joint.{key} for springs"
+        );
+        Err(Error::new(Code::Conflict, sentence).with_fix(fix).at_field(shortened(key)))
+    }
+}
+
+/// Puts a value into all springs of the bodies that `owner` leads to, those that meshes make too. Gives what is missing if
+/// there are none.
+fn put_in_springs(
+    table: &mut Table,
+    owner: &[&str],
+    key: &str,
+    value: &Value,
+    fields: &mut Vec<String>,
+) -> Result<Option<Error>> {
+    let (before, mut nothing) = (fields.len(), None);
+    // A net's values are those of its springs; of a material only the scale of rest lengths is.
+    let tables: &[&str] =
+        if key == "rest_scale" { &["springs", "net", "cloth", "soft"] } else { &["springs", "net"] };
+    for &of_springs in tables {
+        match put_in_table(table, &[owner, &[of_springs, key]].concat(), value, "", fields) {
+            Err(error) if error.code() == Code::NotFound => nothing = nothing.or(Some(error)),
+            done => done?,
+        }
+    }
+    Ok(nothing.filter(|_| fields.len() == before))
 }
 
 /// What may stand alone: the scene's own keys and the shorthands.
@@ -139,10 +201,12 @@ fn put_in_table(
     }
     match table.get_mut(step) {
         Some(inner) => put(inner, rest, value, &field, fields),
-        None if ["plane", "joint", "springs", "pins"].contains(&step) => Err(match path {
-            "" => Error::new(Code::NotFound, format!("this scene has no {step}")),
-            _ => Error::new(Code::NotFound, format!("has no {step}")).at_field(path),
-        }),
+        None if ["plane", "joint", "springs", "pins", "cloth", "soft", "net"].contains(&step) => {
+            Err(match path {
+                "" => Error::new(Code::NotFound, format!("this scene has no {step}")),
+                _ => Error::new(Code::NotFound, format!("has no {step}")).at_field(path),
+            })
+        }
         None => {
             // A table that the scene leaves out, such as rotation; the reader refuses it if there is no such key.
             let mut inner = Table::new();

@@ -138,6 +138,8 @@ fn save_body(body: &mut Body, points: &Range<usize>, own: &Built, target: &Param
     let masses = &target.point_mass[points.clone()];
     if *masses != own.params.point_mass[points.clone()] {
         body.body_mass = None;
+        body.cloth.iter_mut().for_each(|cloth| cloth.density = None);
+        body.soft.iter_mut().for_each(|soft| soft.density = None);
         body.point_mass = Some(match masses {
             [first, rest @ ..] if rest.iter().all(|mass| mass == first) => OneOrEach::One(decimal(*first)),
             _ => OneOrEach::Each(masses.iter().map(|&mass| decimal(mass)).collect()),

@@ -27,6 +27,10 @@ use crate::model::{SurfaceKind, WeightedVertex};
 /// the edges where triangles are far from equilateral.
 const MOST_SHARE: f64 = 0.25;
 
+/// Faces at an edge between which there may be springs for bending: each is joined to each, and a mesh whose faces all meet in
+/// one edge would have as many springs as pairs of faces.
+const MOST_AROUND: usize = 16;
+
 /// What a cloth is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClothMaterial {
@@ -82,16 +86,23 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
     let mut springs: Vec<([u32; 2], f64)> = Vec::new();
     let diagonal = extent(points.iter().copied()).map_or(0.0, |[low, high]| (high - low).length());
     let radius = material.bending_radius.unwrap_or(0.1 * diagonal);
-    let (mut crowded, mut capped) = (0, 0);
+    let (mut crowded, mut overfull, mut capped) = (0, 0, 0);
     for edge in sides.chunk_by(|one, other| one.ends == other.ends) {
         let mut around: Vec<usize> = edge.iter().map(|side| pieces[side.piece].patch).collect();
         around.sort_unstable();
         around.dedup();
         crowded += usize::from(around.len() > 2);
+        if material.bending == 0.0 {
+            continue;
+        }
+        if around.len() > MOST_AROUND {
+            overfull += 1;
+            continue;
+        }
         for (index, one) in edge.iter().enumerate() {
             for other in &edge[index + 1..] {
                 let [p, q] = [&pieces[one.piece], &pieces[other.piece]];
-                if p.patch == q.patch || one.opposite == other.opposite || material.bending == 0.0 {
+                if p.patch == q.patch || one.opposite == other.opposite {
                     continue;
                 }
                 let hinge =
@@ -133,7 +144,12 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
         warnings.push(format!("{which} no cloth around and so no mass: fixed in space"));
     }
     if crowded > 0 {
-        warnings.push(format!("{} more than two faces", counted(crowded, "edge has", "edges have")));
+        let mut sentence = format!("{} more than two faces", counted(crowded, "edge has", "edges have"));
+        if overfull > 0 {
+            let which = counted(overfull, "has", "have");
+            sentence += &format!(", and {which} more than {MOST_AROUND}: there the cloth folds freely");
+        }
+        warnings.push(sentence);
     }
     if capped > 0 {
         warnings.push(format!(

@@ -223,3 +223,39 @@ fn broken_meshes_are_used_with_a_sentence() {
     mesh.positions[0].x = f64::NAN;
     assert_eq!(cloth(&mesh, &MATERIAL).expect_err("it is broken").code(), Code::OutOfRange);
 }
+
+/// Faces around one edge, like the pages of a book.
+fn book(pages: u32) -> Mesh {
+    let mut mesh = Mesh { positions: vec![DVec3::ZERO, DVec3::Y], ..Mesh::default() };
+    for page in 0..pages {
+        let angle = f64::from(page) / f64::from(pages) * std::f64::consts::TAU;
+        mesh.positions.push(DVec3::new(angle.cos(), 0.5, angle.sin()));
+        mesh.faces.push(&[0, 1, page + 2]);
+    }
+    mesh
+}
+
+#[test]
+fn an_edge_that_very_many_faces_share_has_no_springs_across() {
+    let bent = ClothMaterial { bending: 1e-7, ..MATERIAL };
+    // The edge and two sides for each page; and each pair of pages, as long as there are few.
+    let few = cloth(&book(16), &bent).expect("sound");
+    assert_eq!(few.springs.len(), 1 + 2 * 16 + 16 * 15 / 2);
+    assert_eq!(few.warnings[0], "1 edge has more than two faces");
+    let many = cloth(&book(20_000), &bent).expect("sound");
+    assert_eq!(many.springs.len(), 1 + 2 * 20_000);
+    let exact = "1 edge has more than two faces, and 1 has more than 16: there the cloth folds freely";
+    assert_eq!(many.warnings, [exact]);
+}
+
+/// A polygon that goes round the same three corners is as many triangles in one place: a lot of faces at each edge, and no more.
+#[test]
+fn a_polygon_that_repeats_its_corners_takes_no_longer_than_it_is() {
+    let mut mesh = Mesh { positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y], ..Mesh::default() };
+    mesh.faces.push(&[0, 1, 2].repeat(300_000));
+    for bending in [0.0, 1e-7] {
+        let body = cloth(&mesh, &ClothMaterial { bending, ..MATERIAL }).expect("usable");
+        assert_eq!(body.springs.len(), 3);
+        assert!(body.warnings.iter().any(|said| said.starts_with("3 edges have more than two faces")));
+    }
+}

@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use super::MeshSpring;
 use super::inside::Cells;
+use crate::error::{Code, Error, Result};
 use crate::model::WeightedVertex;
 
 /// A cell that is filled less than this counts as filled so much: points of hardly any mass would make for tiny steps, and thin
@@ -39,17 +40,31 @@ pub(super) struct Filling {
 
 impl Filling {
     /// Keeps the cells that meet the inside and those that hold one of the `surface`'s points (m).
-    pub fn new(cells: Cells, mut shares: Vec<f32>, surface: impl Iterator<Item = DVec3>) -> Self {
+    ///
+    /// # Errors
+    /// [`Code::TooLarge`] if so many cells have more springs than there may be.
+    pub fn new(
+        cells: Cells,
+        mut shares: Vec<f32>,
+        surface: impl Iterator<Item = DVec3>,
+        most_springs: u64,
+    ) -> Result<Self> {
         for place in surface {
             let (cell, _) = locate(&cells, place);
             let share = &mut shares[cells.index(cell)];
             *share = share.max(LEAST_SHARE);
         }
         shares.iter_mut().filter(|share| **share > 0.0).for_each(|share| *share = share.max(LEAST_SHARE));
+        // At its first corner each cell has three edges, and on the sides there six diagonals, that are no other's: before any
+        // memory is taken for points and springs, this is how many there will be at least.
+        let kept = shares.iter().filter(|share| **share > 0.0).count() as u64;
+        if kept * PARTNERS.len() as u64 > most_springs {
+            return Err(too_many_springs(cells.spacing, most_springs));
+        }
         let mut filling =
             Self { cells, shares, point_at: Vec::new(), points: Vec::new(), corners: Vec::new() };
         filling.number();
-        filling
+        Ok(filling)
     }
 
     /// Numbers the corners of all kept cells, z fastest.
@@ -97,7 +112,16 @@ impl Filling {
     }
 
     /// Springs for a body of this Young's modulus (Pa) that is as stiff as `volume` of it.
-    pub fn springs(&self, modulus: f64, volume: f64, damping_time: f64) -> Vec<MeshSpring> {
+    ///
+    /// # Errors
+    /// [`Code::TooLarge`] if they are more than there may be.
+    pub fn springs(
+        &self,
+        modulus: f64,
+        volume: f64,
+        damping_time: f64,
+        most_springs: u64,
+    ) -> Result<Vec<MeshSpring>> {
         let stiffness = 0.4 * modulus * self.cells.spacing * (volume / self.volume());
         let mut shares = vec![[0.0f64; 9]; self.points.len()];
         for (cell, share) in kept(&self.cells, &self.shares) {
@@ -113,7 +137,11 @@ impl Filling {
                 }
             }
         }
-        let mut springs = Vec::with_capacity(shares.iter().flatten().filter(|share| **share > 0.0).count());
+        let count = shares.iter().flatten().filter(|share| **share > 0.0).count();
+        if count as u64 > most_springs {
+            return Err(too_many_springs(self.cells.spacing, most_springs));
+        }
+        let mut springs = Vec::with_capacity(count);
         for (point, shares) in shares.iter().enumerate() {
             let from = self.corners[point];
             for (step, &share) in PARTNERS.iter().zip(shares).filter(|(_, share)| **share > 0.0) {
@@ -123,7 +151,7 @@ impl Filling {
                 springs.push(MeshSpring { ends, stiffness, damping: stiffness * damping_time });
             }
         }
-        springs
+        Ok(springs)
     }
 
     /// Ties a place (m) to the points around it.
@@ -160,6 +188,13 @@ impl Filling {
         let cell = cells.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or_default();
         (cell, (wanted - start(cell)).to_array())
     }
+}
+
+fn too_many_springs(spacing: f64, most: u64) -> Error {
+    let sentence = format!("is {spacing} m, and would fill the mesh with more than {most} springs");
+    Error::new(Code::TooLarge, sentence)
+        .with_fix("make the spacing larger, or allow more with max_springs at the top of the scene")
+        .at_field("spacing")
 }
 
 /// The cells with a share, and the share.

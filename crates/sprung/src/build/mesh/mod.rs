@@ -19,6 +19,7 @@ use crate::model::{SurfaceKind, WeightedVertex};
 
 pub use cloth::{ClothMaterial, cloth};
 pub use net::{NetMaterial, net};
+pub(crate) use soft::soft_body_within;
 pub use soft::{MOST_CELLS, SoftMaterial, soft_body};
 pub use weld::MERGE_SHARE;
 

@@ -6,6 +6,7 @@ use super::fill::Filling;
 use super::inside::{Cells, Rule, shares};
 use super::weld::{extent, weld};
 use super::{Mesh, MeshBody, MeshSurface, counted};
+use crate::build::DEFAULT_MAX_SPRINGS;
 use crate::error::{Code, Error, Result};
 use crate::model::SurfaceKind;
 
@@ -35,8 +36,13 @@ pub struct SoftMaterial {
 ///
 /// # Errors
 /// As [`Mesh::check`]; [`Code::Conflict`] for a mesh that is not closed or has no volume, [`Code::TooLarge`] for a spacing too
-/// small to be filled with [`MOST_CELLS`] cells.
+/// small to be filled with [`MOST_CELLS`] cells, or with [`DEFAULT_MAX_SPRINGS`] springs.
 pub fn soft_body(mesh: &Mesh, material: &SoftMaterial) -> Result<MeshBody> {
+    soft_body_within(mesh, material, DEFAULT_MAX_SPRINGS as u64)
+}
+
+/// As [`soft_body`], with another limit on springs.
+pub(crate) fn soft_body_within(mesh: &Mesh, material: &SoftMaterial, most_springs: u64) -> Result<MeshBody> {
     mesh.check()?;
     let welded = weld(mesh, material.merge);
     let mut warnings = mesh.warnings.clone();
@@ -79,7 +85,7 @@ pub fn soft_body(mesh: &Mesh, material: &SoftMaterial) -> Result<MeshBody> {
         surface.iter_mut().for_each(|corners| corners.swap(1, 2));
     }
 
-    let filling = Filling::new(cells, shares, on_surface());
+    let filling = Filling::new(cells, shares, on_surface(), most_springs)?;
     if filling.volume() > 2.0 * volume {
         warnings.push(format!(
             "most cells of {} m are hardly filled, and its motion will be coarse; a smaller spacing would do better",
@@ -93,7 +99,7 @@ pub fn soft_body(mesh: &Mesh, material: &SoftMaterial) -> Result<MeshBody> {
         vertices.iter().map(|vertex| vertex.points[heaviest(vertex.weights).unwrap_or(0)]).collect();
     Ok(MeshBody {
         masses: filling.masses(material.density, volume),
-        springs: filling.springs(material.stiffness, volume, material.damping),
+        springs: filling.springs(material.stiffness, volume, material.damping, most_springs)?,
         surface: Some(MeshSurface { kind: SurfaceKind::Skin, vertices: Some(vertices), triangles: surface }),
         point_of_vertex,
         points: filling.points,

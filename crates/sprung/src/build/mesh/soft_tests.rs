@@ -116,3 +116,20 @@ fn broken_surfaces_are_mended_or_refused_with_a_sentence() {
     let error = soft_body(&whole, &SoftMaterial { spacing: 1e-6, ..MATERIAL }).expect_err("too fine");
     assert_eq!(error.code(), Code::TooLarge);
 }
+
+#[test]
+fn a_spacing_that_makes_too_many_springs_is_refused_before_they_are_made() {
+    let mesh = ball(1);
+    let material = SoftMaterial { spacing: 0.25, ..MATERIAL };
+    let all = soft_body(&mesh, &material).expect("closed").springs.len() as u64;
+    assert_eq!(soft_body_within(&mesh, &material, all).expect("just enough").springs.len() as u64, all);
+    // One too few is found when springs are counted, far too few when cells are.
+    for limit in [all - 1, 100] {
+        let error = soft_body_within(&mesh, &material, limit).expect_err("too many");
+        let exact = format!("spacing: is 0.25 m, and would fill the mesh with more than {limit} springs");
+        assert!(error.to_string().starts_with(&exact), "{error}");
+    }
+    // Within the limit on cells: 200 across, and some 4 million inside with 9 springs each.
+    let error = soft_body(&mesh, &SoftMaterial { spacing: 0.01, ..MATERIAL }).expect_err("too many");
+    assert!(error.to_string().contains("more than 20000000 springs"), "{error}");
+}
