@@ -47,7 +47,9 @@ fn what_is_no_checkpoint_or_damaged() {
     let all = |name: &str| {
         let lines = [&["run", "--resume", name][..], &["show", name], &["run", name, "-o", "b.csv"]]
             .map(|arguments| complaint(folder.path(), arguments));
-        assert!(lines.iter().all(|line| *line == lines[0]), "{lines:?}");
+        // How much memory is available is another number from moment to moment.
+        let said = |line: &str| line.split(", and ").next().unwrap_or_default().to_owned();
+        assert!(lines.iter().all(|line| said(line) == said(&lines[0])), "{lines:?}");
         lines[0].clone()
     };
     assert_eq!(all("none.sprung"), "none.sprung: there is no such file");
