@@ -19,7 +19,8 @@ fn chosen() -> &'static Reader {
     READER.get_or_init(|| {
         let ending = std::env::var("SPRUNG_READER").unwrap_or_default();
         let found = READERS.iter().find(|reader| reader.endings.contains(&ending.as_str()));
-        found.unwrap_or_else(|| panic!("SPRUNG_READER must be the ending of a mesh file, and is \"{ending}\""))
+        found
+            .unwrap_or_else(|| panic!("SPRUNG_READER must be the ending of a mesh file, and is \"{ending}\""))
     })
 }
 
@@ -41,9 +42,17 @@ fuzz_target!(|bytes: &[u8]| -> Corpus {
     if mesh.positions.len() > MOST_VERTICES {
         return Corpus::Keep;
     }
-    let bent = ClothMaterial { density: 1.0, stiffness: 1.0, bending: 1e-3, bending_radius: None, damping: 0.1, merge: None };
+    let bent = ClothMaterial {
+        density: 1.0,
+        stiffness: 1.0,
+        bending: 1e-3,
+        bending_radius: None,
+        damping: 0.1,
+        merge: None,
+    };
     let diagonal = mesh.positions.iter().fold(1e-9f64, |size, place| size.max(place.length()));
-    let filled = SoftMaterial { spacing: diagonal / 4.0, density: 1.0, stiffness: 1.0, damping: 0.1, merge: None };
+    let filled =
+        SoftMaterial { spacing: diagonal / 4.0, density: 1.0, stiffness: 1.0, damping: 0.1, merge: None };
     let knotted = NetMaterial { stiffness: 1.0, damping: 0.1, merge: None };
     for body in [cloth(&mesh, &bent), soft_body(&mesh, &filled), net(&mesh, &knotted)].into_iter().flatten() {
         assert!(body.springs.iter().all(|spring| spring.ends[0] < spring.ends[1]));

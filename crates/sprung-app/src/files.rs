@@ -168,7 +168,7 @@ fn running(saved: Result<Saved>, file: &str, options: &Options) -> Result<Runnin
 /// Writes a checkpoint of the open scene, and gives its size.
 ///
 /// # Errors
-/// As [`write`], and if the file belongs to a run that is still going.
+/// As [`write()`], and if the file belongs to a run that is still going.
 pub fn write_checkpoint(path: &Path, report: &Report, checkpoint: &Checkpoint) -> Result<u64> {
     checkpoint::check_name(path)?;
     let opened = &report.opened;
@@ -211,7 +211,7 @@ pub fn parse_scene(bytes: &[u8], file: &str) -> Result<Source, Refused> {
 /// Writes the open scene with all parameters as they are now, and gives the file's size.
 ///
 /// # Errors
-/// As [`scene_text`] and [`write`], and if the name is that of a checkpoint.
+/// As [`scene_text`] and [`write()`], and if the name is that of a checkpoint.
 pub fn write_scene(path: &Path, report: &Report) -> Result<u64> {
     if checkpoint::is_name(path) {
         let error =
@@ -233,7 +233,7 @@ pub fn scene_text(report: &Report) -> Result<String> {
 /// Writes a file: beside its place, and renamed when whole.
 ///
 /// # Errors
-/// [`Code::Unwritable`](sprung::Code::Unwritable), naming the file; what was there before is left as it was.
+/// [`Code::Unwritable`], naming the file; what was there before is left as it was.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<u64> {
     let mut file = PartialFile::create(path)?;
     file.write_all(bytes).map_err(|error| sprung_io::files::write_error(path, &error))?;

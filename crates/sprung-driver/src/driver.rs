@@ -67,7 +67,7 @@ impl Driver {
     /// As [`new`](Self::new), with so much memory and these threads.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`Code::TooLarge`] for a scene that needs more memory than there is.
+    /// As [`new`](Self::new), and [`sprung::Code::TooLarge`] for a scene that needs more memory than there is.
     pub fn with(beginning: impl Into<Beginning>, options: Options) -> Result<Self> {
         let (simulation, opened) = build(beginning.into(), 1, &options)?;
         let mut run = Run::new(simulation, has_room_for_two(&opened, &options));

@@ -5,7 +5,7 @@
 //! within 32 bits in a row, and so every flipped byte, whatever the length; a cut is found by the lengths. Positions and
 //! velocities are held against the 64-bit hash of the state besides. All numbers are little-endian.
 //!
-//! What a version holds, section by section, is in [`sections`], and never changes: a later version gets another number,
+//! What a version holds, section by section, is in `sections.rs`, and never changes: a later version gets another number,
 //! and earlier ones are still read. See also `docs/checkpoints.md`.
 
 mod container;
