@@ -6,12 +6,16 @@
 
 mod action;
 mod app;
+mod beginning;
 mod card;
 pub mod explain;
 pub mod files;
 mod icon;
 mod media;
+#[cfg(not(target_arch = "wasm32"))]
 mod native;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod panel;
 pub mod plots;
 mod settings;
@@ -20,11 +24,14 @@ mod text;
 mod theme;
 mod timeline;
 mod view;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 
 pub use action::{ACTIONS, Action, ActionInfo};
 pub use app::App;
 pub use card::GESTURES;
 pub use media::{Film, FilmClock, Filming, PictureSize, SaveRequest};
+#[cfg(not(target_arch = "wasm32"))]
 pub use native::{Options, run};
 pub use panel::PLANETS;
 pub use sprung_driver::{Beginning, Running, Source};

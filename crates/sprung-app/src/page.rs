@@ -1,0 +1,17 @@
+//! What the page does for the app: `web.js`.
+
+use wasm_bindgen::prelude::wasm_bindgen;
+
+#[wasm_bindgen(module = "/src/web.js")]
+extern "C" {
+    /// The part of the address behind `#`.
+    pub fn fragment() -> String;
+    /// The page's address without that part.
+    pub fn address() -> String;
+    /// Hands a file to the person.
+    pub fn download(name: &str, bytes: &[u8]);
+    /// The first picture is drawn.
+    pub fn ready();
+    /// The app cannot go on.
+    pub fn failed(reason: &str);
+}

@@ -1,0 +1,71 @@
+//! The door to a page: the same window in a canvas.
+
+use std::panic;
+
+use eframe::wasm_bindgen::{JsCast, JsValue};
+use eframe::{WebOptions, WebRunner, web_sys};
+use sprung::{Code, Error, Result};
+use sprung_driver::{Driver, Handle, Options};
+
+use crate::app::App;
+use crate::beginning::first;
+use crate::page;
+use crate::settings::Settings;
+
+/// The canvas of the page.
+const CANVAS: &str = "sprung";
+
+/// Memory for the recorded run, bytes: a page has at most 4 GiB, and phones give it less.
+const HISTORY_BYTES: usize = 128 << 20;
+
+/// A scene that needs more is refused, bytes.
+const MEMORY_LIMIT: u64 = 1 << 30;
+
+/// Begins; it goes on by itself as the browser asks for pictures.
+pub fn start() {
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        usual(info);
+        page::failed(&info.to_string());
+    }));
+    wasm_bindgen_futures::spawn_local(async {
+        if let Err(reason) = run().await {
+            page::failed(&reason);
+        }
+    });
+}
+
+async fn run() -> Result<(), String> {
+    let document = web_sys::window().and_then(|window| window.document()).ok_or("there is no page")?;
+    let canvas = document.get_element_by_id(CANVAS).and_then(|it| it.dyn_into().ok());
+    let canvas: web_sys::HtmlCanvasElement = canvas.ok_or("the page has no canvas")?;
+    let create = |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+        Ok(Box::new(create(context)?))
+    };
+    let started = WebRunner::new().start(canvas, WebOptions::default(), Box::new(create)).await;
+    started.map_err(|reason| why(&reason))?;
+    page::ready();
+    Ok(())
+}
+
+fn create(context: &eframe::CreationContext<'_>) -> Result<App> {
+    if context.wgpu_render_state.is_none() {
+        return Err(Error::new(Code::NoWindow, "the browser gives neither WebGPU nor WebGL 2 to draw with"));
+    }
+    let options =
+        Options { history_bytes: HISTORY_BYTES, memory_limit: Some(MEMORY_LIMIT), ..Default::default() };
+    let settings = Settings::load(context.storage);
+    let (beginning, origin, refused) = first(None, None, &settings, &options)?;
+    let mut app = App::new(Handle::page(Driver::with(beginning, options)?), context);
+    app.state_mut().files.origin = origin;
+    if let Some(error) = refused {
+        app.state_mut().refuse(error);
+    }
+    Ok(app)
+}
+
+/// What a browser gives as a reason.
+fn why(reason: &JsValue) -> String {
+    let message = reason.dyn_ref::<js_sys::Error>().map(|error| String::from(error.message()));
+    message.or_else(|| reason.as_string()).unwrap_or_else(|| format!("{reason:?}"))
+}
