@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use sprung::{Code, Error, Result};
-use sprung_io::{Estimate, Exporter, Heeds, Options, RunInfo, Springs, Up, files};
+use sprung_io::{Estimate, Exporter, Heeds, Options, RunInfo, Springs, Up, Writes, check_apart, files};
 use sprung_render::export::{EXPORTERS, exporter_for};
 
 use crate::args::{Axis, RunArgs, SpringStyle};
@@ -29,10 +29,14 @@ impl<'a> Outputs<'a> {
     /// Plans them.
     ///
     /// # Errors
-    /// Those of an ending that nobody writes, of options that are of no use for these outputs, and of whatever the formats
+    /// Those of an ending that nobody writes, of outputs that get into each other's way, of options that are of no use for these outputs, and of whatever the formats
     /// refuse of run and options.
     pub fn plan(args: &'a RunArgs, info: &RunInfo, options: &Options) -> Result<Self> {
         let exporters = args.output.iter().map(|path| exporter_for(path)).collect::<Result<Vec<_>>>()?;
+        let mut places: Vec<(&Path, Writes)> =
+            args.output.iter().zip(&exporters).map(|(path, exporter)| (&**path, exporter.writes)).collect();
+        places.extend(args.plot.iter().chain(&args.checkpoint).map(|path| (&**path, Writes::File)));
+        check_apart(&places)?;
         check_heeded(args, &exporters)?;
         check_resumable(args, &exporters)?;
         let estimate = |(path, exporter): (&'a PathBuf, &&Exporter)| {

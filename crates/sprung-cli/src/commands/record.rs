@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use sprung::{Code, Energy, Error, Params, Result, Simulation, Snapshot};
+use sprung::{Energy, Error, Params, Result, Simulation, Snapshot};
 use sprung_io::checkpoint::Recording;
 use sprung_io::files::{is_complete, remove_spools};
 use sprung_io::{Export, Frame, Mark, Options, RunInfo, Written};
@@ -38,15 +38,6 @@ pub struct Recorder {
     frames: u64,
 }
 
-/// Refuses a name that is given twice.
-pub fn check_names(outputs: &[PathBuf], plot: Option<&PathBuf>) -> Result<()> {
-    let mut names: Vec<&PathBuf> = outputs.iter().chain(plot).collect();
-    names.sort();
-    let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) else { return Ok(()) };
-    let error = Error::new(Code::Duplicate, "is given twice as an output");
-    Err(error.in_file(twice[0].display().to_string()).with_fix("give each output a name of its own"))
-}
-
 impl Recorder {
     /// Begins all files, before anything is simulated.
     pub fn open(
@@ -56,11 +47,9 @@ impl Recorder {
         options: &Options,
         from: u64,
     ) -> Result<Self> {
-        check_names(outputs, plot)?;
         let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
         let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
         let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;
-        // After the exports: an output that is asked for twice is refused, whatever it would hold.
         let plot = plot.map(|path| EnergyPlot::begin(path)).transpose()?;
         let title = format!("Energy: {}", info.title);
         Ok(Self { exports, plot, title, samples: Vec::new(), held: Vec::new(), from, frames: 0 })

@@ -10,7 +10,7 @@ use sprung_io::{RunInfo, Written, files};
 
 use super::checkpoints::Checkpoints;
 use super::outputs::{self, Outputs};
-use super::record::{Recorder, check_names};
+use super::record::Recorder;
 use super::resume;
 use super::show::describe;
 use crate::args::RunArgs;
@@ -166,7 +166,6 @@ fn check_times(args: &RunArgs, plan: &Plan) -> Result<()> {
 
 /// Says what would be done. Of the places to write it looks whether they can be written, and leaves them as they are.
 fn dry_run(args: &RunArgs, plan: &Plan, name: &str, outputs: &Outputs<'_>) -> Result<()> {
-    check_names(&args.output, args.plot.as_ref())?;
     args.output.iter().chain(&args.plot).try_for_each(|path| files::check(path))?;
     plan.announce();
     let steps = plan.steps_per_frame * plan.frames;

@@ -1,5 +1,6 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
+mod apart;
 mod colour;
 mod csv;
 pub mod geometry;
@@ -26,6 +27,7 @@ use serde::{Deserialize, Serialize};
 use sprung::energy::Energy;
 use sprung::{Code, Error, Model, Params, Result, Snapshot};
 
+pub use apart::{Writes, check_apart};
 pub use csv::CSV;
 pub use geometry::Geometry;
 pub use gltf::GLB;
@@ -210,6 +212,8 @@ pub struct Exporter {
     pub description: &'static str,
     /// The options it takes account of.
     pub heeds: &'static [Heeds],
+    /// Where it writes.
+    pub writes: Writes,
     /// How many bytes it will take for [`RunInfo::frames`] frames. It writes nothing, and refuses what `open` refuses of
     /// run and options.
     pub estimate: fn(&RunInfo, &Options) -> Result<Estimate>,

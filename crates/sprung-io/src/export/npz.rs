@@ -21,7 +21,7 @@ use sprung::{Result, Vec3};
 
 use super::spool::{PIECE_BYTES, put};
 use super::stored_zip::{self, StoredZip, header_bytes};
-use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
+use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Writes, Written};
 use crate::files::{PartialFile, spool_beside, write_error};
 
 /// `.npz`: arrays `time`, `positions` and `velocities` (frames, points, 3), `springs` and `mass`.
@@ -29,6 +29,7 @@ pub const NPZ: Exporter = Exporter {
     ending: "npz",
     description: "NumPy arrays: time, positions, velocities, springs, mass (s, m, m/s, -, kg)",
     heeds: &[],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),

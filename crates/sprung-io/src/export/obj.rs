@@ -9,7 +9,7 @@ use super::geometry::Part;
 use super::sequence::Sequence;
 use super::{
     Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Up,
-    Written,
+    Writes, Written,
 };
 
 /// `.obj`: a mesh file for each frame; numbers read back to the same float32.
@@ -17,6 +17,7 @@ pub const OBJ: Exporter = Exporter {
     ending: "obj",
     description: "meshes, one file for each frame: NAME.0000.obj and so on",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::Sequence,
     estimate,
     open,
     resume: Some(resume),

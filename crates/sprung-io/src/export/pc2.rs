@@ -15,7 +15,8 @@ use sprung::{Code, Error, Result};
 
 use super::numbers::{little, write_all};
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Writes,
+    Written,
 };
 use crate::files::{PartialFile, write_error};
 use crate::pack::{Pack, Unpack};
@@ -25,6 +26,7 @@ pub const PC2: Exporter = Exporter {
     ending: "pc2",
     description: "a point cache: the vertices of the .obj of the same options, for Blender and 3ds Max",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),

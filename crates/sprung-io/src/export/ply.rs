@@ -14,7 +14,8 @@ use super::obj::{one_line, unit_and_axes};
 use super::sequence::Sequence;
 use super::vtp::number;
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Writes,
+    Written,
 };
 
 /// `.ply`: a binary mesh file for each frame.
@@ -22,6 +23,7 @@ pub const PLY: Exporter = Exporter {
     ending: "ply",
     description: "binary meshes with normals, velocities and colours, one file for each frame",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::Sequence,
     estimate,
     open,
     resume: Some(resume),

@@ -116,12 +116,7 @@ impl Sequence {
 
     /// Removes the files of the sequence whose numbers are such.
     fn remove(&self, which: impl Fn(u64) -> bool) -> io::Result<()> {
-        let [before, after] = around(self.path());
-        remove_beside(self.path(), |name| {
-            let digits = name.strip_prefix(&*before)?.strip_suffix(&*after)?;
-            let number: u64 = digits.parse().ok()?;
-            Some(format!("{number:04}") == digits && which(number))
-        })
+        remove_beside(self.path(), |name| Some(which(number_of(self.path(), name)?)))
     }
 }
 
@@ -143,6 +138,19 @@ fn numbered(path: &Path, number: &str) -> PathBuf {
         name.push(ending);
     }
     path.with_file_name(name)
+}
+
+/// Whether a file of this name, in the folder of `path`, is of the sequence that is called so.
+pub fn has(path: &Path, name: &str) -> bool {
+    number_of(path, name).is_some()
+}
+
+/// The frame that a file of this name has in the sequence that is called `path`.
+fn number_of(path: &Path, name: &str) -> Option<u64> {
+    let [before, after] = around(path);
+    let digits = name.strip_prefix(&*before)?.strip_suffix(&*after)?;
+    let number: u64 = digits.parse().ok()?;
+    (format!("{number:04}") == digits).then_some(number)
 }
 
 /// What is before and after the number in the names of a sequence's files.

@@ -15,7 +15,8 @@ use sprung::{Code, Error, Result};
 
 use super::vtp::Layer;
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Writes,
+    Written,
 };
 use crate::files::{Folder, PartialFile, spool_beside, write_error};
 use crate::pack::{Pack, Unpack};
@@ -26,6 +27,7 @@ pub const VTK: Exporter = Exporter {
     description: "for ParaView: springs with strain and tension, points with force and velocity, surfaces; a .vtp for \
                   each frame in a folder of that name",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::FileAndFolder,
     estimate,
     open,
     resume: Some(resume),

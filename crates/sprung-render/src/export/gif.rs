@@ -8,7 +8,7 @@ use std::sync::Arc;
 use sprung::Result;
 use sprung_io::files::write_error;
 use sprung_io::{
-    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, PartialFile, Progress, RunInfo, Written,
+    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, PartialFile, Progress, RunInfo, Writes, Written,
 };
 
 use super::png::no_frames;
@@ -22,6 +22,7 @@ pub const GIF: Exporter = Exporter {
     ending: "gif",
     description: "an animation that plays in real time and loops",
     heeds: &[Heeds::Size],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use sprung::{Code, Error, Result};
 use sprung_io::files::write_error;
-use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{
+    Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Writes, Written,
+};
 
 use super::png::no_frames;
 use super::spool::Spool;
@@ -19,6 +21,7 @@ pub const MP4: Exporter = Exporter {
     ending: "mp4",
     description: "a film (needs ffmpeg)",
     heeds: &[Heeds::Size],
+    writes: Writes::File,
     estimate,
     open,
     resume: None,

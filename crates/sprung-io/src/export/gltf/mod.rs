@@ -17,7 +17,7 @@ use sprung::{Code, Error, Params, Result, Snapshot, Vec3};
 use self::document::{Bounds, Document};
 use super::spool::{PIECE_BYTES, Reserve, put};
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Up, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Up, Writes, Written,
 };
 use crate::files::{PartialFile, write_error};
 use crate::pack::{Pack, Unpack};
@@ -27,6 +27,7 @@ pub const GLB: Exporter = Exporter {
     ending: "glb",
     description: "glTF: a clip of at most 257 frames, or the shape nearest to --at, for the web and game engines",
     heeds: &[Heeds::At, Heeds::Geometry, Heeds::Springs],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),
