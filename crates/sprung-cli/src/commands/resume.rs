@@ -65,7 +65,6 @@ pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
         frames: plan.last_frame,
         from: plan.from,
         fitted: None,
-        jumps: false,
     };
     // Completing files needs no further checkpoint: this one says all there is to know.
     let goes_on = plan.ended.is_none();
