@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use same_file::Handle;
 use sprung::{Code, Error, Result};
 
-pub use resume::{is_complete, remove_spools};
+pub use resume::{has_no_partial, is_complete, remove_spools};
 
 /// Bytes gathered before they are handed to the system.
 const BUFFER_BYTES: usize = 1 << 16;

@@ -49,6 +49,9 @@ pub struct Surface {
     pub vertices: SurfaceVertices,
     /// Corners of each triangle: indices into the model's points, or into the list of weighted vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// How many triangles each face of an artist's mesh is, in order: they are a fan around its first corner. Empty where
+    /// every triangle is a face of its own.
+    pub fans: Vec<u32>,
 }
 
 /// What the corners of a surface's triangles are.

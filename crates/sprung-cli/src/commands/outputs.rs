@@ -39,8 +39,8 @@ impl<'a> Outputs<'a> {
     /// Plans them.
     ///
     /// # Errors
-    /// Those of an ending that nobody writes, of outputs that get into each other's way, of options that are of no use for these outputs, and of whatever the formats
-    /// refuse of run and options.
+    /// Those of an ending that nobody writes, of outputs that get into each other's way, of options that are of no use for
+    /// these outputs, and of whatever the formats refuse of run and options.
     pub fn plan(args: &'a RunArgs, info: &RunInfo, options: &Options) -> Result<Self> {
         let exporters = args.output.iter().map(|path| exporter_for(path)).collect::<Result<Vec<_>>>()?;
         let mut places: Vec<(&Path, Writes)> =

@@ -3,10 +3,12 @@
 mod apart;
 mod colour;
 mod csv;
+mod faces;
 pub mod geometry;
 mod gltf;
 mod mark;
 mod mdd;
+mod mesh_files;
 mod npz;
 mod numbers;
 mod obj;
@@ -22,6 +24,7 @@ mod vtp;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 use sprung::energy::Energy;
@@ -39,6 +42,8 @@ pub use pc2::PC2;
 pub use ply::PLY;
 pub use usd::{USDA, USDC, USDZ};
 pub use vtk::VTK;
+
+use crate::files;
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]
@@ -225,6 +230,18 @@ pub struct Exporter {
     /// What is written after that is, byte for byte, what would have been written without the interruption, even if that
     /// came in the middle of [`Export::finish`].
     pub resume: Option<Resume>,
+}
+
+impl Exporter {
+    /// Whether an output that was being completed when the run was killed had been completed before that. `begun` is when
+    /// the run began.
+    pub fn is_complete(&self, path: &Path, mark: &Mark, begun: SystemTime) -> bool {
+        match self.writes {
+            Writes::Sequence => sequence::is_complete(path, mark, begun),
+            // The list of a folder's files gets its name when they are all there.
+            Writes::File | Writes::FileAndFolder => files::is_complete(path, begun),
+        }
+    }
 }
 
 /// See [`Exporter::resume`].

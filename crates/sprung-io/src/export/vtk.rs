@@ -1,7 +1,7 @@
 //! VTK: a `.pvd` file that lists every frame with its time, and beside it a folder with the frames' `.vtp` files.
 //!
 //! A frame is one or two of them. `points` holds the simulated points with `velocity`, `force`, `mass`, `fixed` and
-//! `body`, and the springs as lines with `strain` and `tension`. `surface` holds the triangles, where there are any, with
+//! `body`, and the springs as lines with `strain` and `tension`. `surface` holds the faces, where there are any, with
 //! `velocity`, `normal` and `body`: they are apart, as a surface may have vertices that are no points, on which no force
 //! acts.
 //!
