@@ -121,6 +121,56 @@ fn outputs_that_cannot_be_written() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left but the folder");
 }
 
+/// Each case: the outputs, and what is said of them. Where a folder is missing or a link leads is looked at, too.
+#[test]
+fn outputs_that_get_into_each_others_way() {
+    let folder = TempDir::new().unwrap();
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (&["-o", "a.pc2", "-o", "./a.pc2"], "a.pc2 and ./a.pc2 are the same file"),
+        (&["-o", "sub/../a.png", "--plot", "a.png"], "sub/../a.png and a.png are the same file"),
+        (&["-o", "none/a.csv", "-o", "./none/a.csv"], "none/a.csv and ./none/a.csv are the same file"),
+        (&["-o", "a.obj", "-o", "a.0001.obj"], "a.obj writes into a.0001.obj, the file of a frame"),
+        (&["-o", "./a.10000.ply", "-o", "a.ply"], "a.ply writes into ./a.10000.ply, the file of a frame"),
+        (&["-o", "a.0001.obj.pvd", "-o", "a.obj"], "a.obj writes into a.0001.obj, the file of a frame"),
+        (
+            &["-o", "a.csv", "-o", "a.csv.pvd"],
+            "a.csv.pvd writes into the folder a.csv, where a.csv is to be written",
+        ),
+        (&["-o", "x.pvd", "-o", "x/y.csv"], "x.pvd writes into the folder x, where x/y.csv is to be written"),
+        (&["-o", "x.pvd", "-o", "x.PVD"], "x.pvd writes into the folder x, where x.PVD is to be written"),
+        (
+            &["-o", "a.sprung.pvd", "--checkpoint", "a.sprung"],
+            "a.sprung.pvd writes into the folder a.sprung, where a.sprung is to be written",
+        ),
+    ];
+    for (outputs, sentence) in cases {
+        for more in [&[][..], &["--dry-run"]] {
+            let line =
+                complaint(folder.path(), &[&["run", "spring", "--frames", "2"], *outputs, more].concat());
+            assert_eq!(line, format!("-o: {sentence}; give each output a name of its own"));
+        }
+    }
+    #[cfg(unix)]
+    {
+        std::fs::write(folder.path().join("sub/b.csv"), "mine").unwrap();
+        std::os::unix::fs::symlink("sub/b.csv", folder.path().join("a.csv")).unwrap();
+        let line = complaint(folder.path(), &["run", "spring", "-o", "a.csv", "-o", "sub/b.csv"]);
+        assert!(line.starts_with("-o: a.csv and sub/b.csv are the same file"), "{line}");
+        std::fs::remove_file(folder.path().join("a.csv")).unwrap();
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left but the folder");
+
+    // These look alike, and are apart.
+    let fine =
+        ["a.obj", "a.001.obj", "sub/a.0001.obj", "a.ply", "a.0001.ply.csv", "x.pvd", "sub/x.pvd", "x.csv"];
+    let outputs: Vec<&str> = fine.iter().flat_map(|name| ["-o", name]).collect();
+    let run = [&["run", "spring", "--frames", "2", "--quiet"], &outputs[..]].concat();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_sprung")).current_dir(folder.path()).args(run).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn bad_arguments() {
     let folder = TempDir::new().unwrap();

@@ -80,7 +80,7 @@ fn without_outputs_there_is_nothing_to_keep() {
 fn a_scene_that_never_comes_to_rest_can_be_left_while_it_is_settled() {
     let folder = TempDir::new().unwrap();
     // In free fall, where the kinetic energy has no peak; and of many points, so that it goes on for long.
-    let scene = "dt = 0.001\n[[body]]\nname = \"rain\"\nlattice = { points = [30, 30, 30], spacing = 1 }\npoint_mass = 1\n";
+    let scene = "dt = 0.001\nsubsteps = 20\n[[body]]\nname = \"rain\"\nlattice = { points = [30, 30, 30], spacing = 1 }\npoint_mass = 1\n";
     std::fs::write(folder.path().join("rain.toml"), scene).unwrap();
     let run = ["run", "rain.toml", "--settle", "-o", "a.csv", "-o", "b.gif", "--frames", "20"];
     let (said, names) = press_ctrl_c(&mut sprung(&run), folder.path(), "a.csv.partial", 0);

@@ -74,6 +74,40 @@ fn a_dry_run_refuses_what_a_run_refuses() {
     }
 }
 
+/// Frames that lie far apart or close together, and no rate was asked for.
+#[test]
+fn a_better_pace_is_suggested() {
+    let folder = TempDir::new().unwrap();
+    let smoother = "Frames are 0.07 s apart; --fps 25 makes a smoother film.\n";
+    let fewer = "Frames are 0.005 s apart; --fps 24 makes fewer of them.\n";
+    let fine: &[&str] = &["--set", "dt=0.005", "--set", "substeps=1"];
+    for (arguments, ending, note) in [
+        (&[][..], "gif", smoother),
+        (&[], "GIF", smoother),
+        (&[], "csv", ""),
+        (&[], "png", ""),
+        (fine, "gif", fewer),
+        (fine, "csv", fewer),
+        (fine, "obj", fewer),
+        (fine, "png", ""),
+        (
+            &["--fps", "200"],
+            "csv",
+            "dt is 0.005 s instead of 0.01 s, so that 1 step makes a frame of 1/200 s.\n",
+        ),
+        (&["--set", "dt=0.0084", "--set", "substeps=1"], "csv", ""),
+    ] {
+        let arguments = [&["run", "cloth", "--frames", "9", "--dry-run"], arguments].concat();
+        let output = run(folder.path(), &arguments, &[ending]);
+        assert!(output.status.success());
+        assert_eq!(said(&output)[1], note, "{arguments:?} {ending}");
+        let output = run(folder.path(), &[&arguments[..], &["--quiet"]].concat(), &[ending]);
+        assert_eq!(said(&output)[1], "", "{arguments:?} {ending}");
+    }
+    let output = run(folder.path(), &[&["run", "cloth", "--frames", "9"], fine].concat(), &["pc2"]);
+    assert!(said(&output)[1].starts_with(fewer), "{}", said(&output)[1]);
+}
+
 /// 10⁸ frames of 1000 points: tens of terabytes.
 #[test]
 fn what_does_not_fit_the_disk_is_refused_before_it_is_begun() {

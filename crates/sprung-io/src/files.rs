@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use same_file::Handle;
 use sprung::{Code, Error, Result};
 
-pub use resume::{is_complete, remove_spools};
+pub use resume::{has_no_partial, is_complete, remove_spools};
 
 /// Bytes gathered before they are handed to the system.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -306,8 +306,7 @@ fn not_begun(path: &Path, partial: &Path, error: &io::Error) -> Error {
 
 /// Makes a file's new name last through a loss of power, where the system can.
 fn sync_folder_of(path: &Path) {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    let _ = File::open(folder_of(path)).and_then(|folder| folder.sync_all());
 }
 
 /// What a file is opened for.
@@ -386,7 +385,7 @@ pub fn check(path: &Path) -> Result<()> {
 
 /// Room that is left on the disk of an output, bytes, where the system tells.
 pub fn room_beside(path: &Path) -> Option<u64> {
-    fs4::available_space(folder_of(path)).ok()
+    fs4::available_space(folder_of(&place_of(path))).ok()
 }
 
 /// A name of the disk that an output lies on, the same for all of one disk.
@@ -394,12 +393,11 @@ pub fn disk_of(path: &Path) -> Option<String> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::MetadataExt;
-        Some(std::fs::metadata(folder_of(path)).ok()?.dev().to_string())
+        Some(std::fs::metadata(folder_of(&place_of(path))).ok()?.dev().to_string())
     }
     #[cfg(not(unix))]
     {
-        let folder = folder_of(path).canonicalize().ok()?;
-        Some(folder.components().next()?.as_os_str().to_string_lossy().into_owned())
+        Some(place_of(path).components().next()?.as_os_str().to_string_lossy().into_owned())
     }
 }
 
@@ -457,6 +455,14 @@ pub fn remove_beside(path: &Path, is_meant: impl Fn(&str) -> Option<bool>) -> io
     Ok(())
 }
 
+/// Where a path leads, the same for all its spellings, and whether there is anything yet or not.
+pub fn place_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| match path.file_name() {
+        Some(name) => place_of(folder_of(path)).join(name),
+        None => path.to_owned(),
+    })
+}
+
 /// The folder that a file of this name lies in.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -469,8 +475,7 @@ pub fn folder_of(path: &Path) -> &Path {
 /// [`Code::Unwritable`], naming `path`.
 pub fn spool_beside(path: &Path) -> Result<File> {
     // Where the output is a link, its disk is that of the file it leads to.
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    tempfile::tempfile_in(folder_of(&target)).map_err(|error| write_error(path, &error))
+    tempfile::tempfile_in(folder_of(&place_of(path))).map_err(|error| write_error(path, &error))
 }
 
 /// A temporary file without a name, in the system's folder for such: for what waits before anybody has said where it is

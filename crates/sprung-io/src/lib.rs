@@ -10,7 +10,7 @@ mod pack;
 
 pub use export::{
     Estimate, Export, Exporter, FileMark, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs,
-    Up, Written,
+    Up, Writes, Written, check_apart,
 };
 pub use files::PartialFile;
 pub use pack::{Pack, Unpack};

@@ -2,12 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use sprung::{Code, Error, Result};
-use sprung_io::{Estimate, Exporter, Heeds, Options, RunInfo, Springs, Up, files};
+use sprung::{Code, Error, Result, significant as rounded};
+use sprung_io::{Estimate, Exporter, Heeds, Options, RunInfo, Springs, Up, Writes, check_apart, files};
 use sprung_render::export::{EXPORTERS, exporter_for};
 
 use crate::args::{Axis, RunArgs, SpringStyle};
 use crate::console::{bytes, counted, note, say};
+
+/// Frames further apart than this make a film that visibly jumps, s.
+const SMOOTH: f64 = 1.0 / 15.0;
+
+/// Frames closer than this are more than any screen shows, s.
+const FINE: f64 = 1.0 / 120.0;
 
 /// Runs that write less than this do not say so beforehand, bytes.
 const WORTH_TELLING: u64 = 100_000_000;
@@ -15,6 +21,8 @@ const WORTH_TELLING: u64 = 100_000_000;
 /// The outputs of a run, in the order in which they were given.
 pub struct Outputs<'a> {
     planned: Vec<Planned<'a>>,
+    /// From one frame to the next, s, where no rate was asked for.
+    frame_time: Option<f64>,
 }
 
 /// What is known of an output beforehand.
@@ -23,26 +31,34 @@ struct Planned<'a> {
     estimate: Estimate,
     /// It holds one moment, however many frames the run has.
     is_still: bool,
+    /// It is pictures that move.
+    is_film: bool,
 }
 
 impl<'a> Outputs<'a> {
     /// Plans them.
     ///
     /// # Errors
-    /// Those of an ending that nobody writes, of options that are of no use for these outputs, and of whatever the formats
-    /// refuse of run and options.
+    /// Those of an ending that nobody writes, of outputs that get into each other's way, of options that are of no use for
+    /// these outputs, and of whatever the formats refuse of run and options.
     pub fn plan(args: &'a RunArgs, info: &RunInfo, options: &Options) -> Result<Self> {
         let exporters = args.output.iter().map(|path| exporter_for(path)).collect::<Result<Vec<_>>>()?;
+        let mut places: Vec<(&Path, Writes)> =
+            args.output.iter().zip(&exporters).map(|(path, exporter)| (&**path, exporter.writes)).collect();
+        places.extend(args.plot.iter().chain(&args.checkpoint).map(|path| (&**path, Writes::File)));
+        check_apart(&places)?;
         check_heeded(args, &exporters)?;
         check_resumable(args, &exporters)?;
         let estimate = |(path, exporter): (&'a PathBuf, &&Exporter)| {
             let named = |error: Error| error.in_file(path.display().to_string());
             let estimate = (exporter.estimate)(info, options).map_err(named)?;
-            // What heeds a size and a moment is a single picture, whatever was said.
+            // What heeds a size is pictures, and with a moment it is a single one, whatever was said.
             let [at, size] = [Heeds::At, Heeds::Size].map(|heeds| exporter.heeds.contains(&heeds));
-            Ok(Planned { path, estimate, is_still: at && (size || options.at.is_some()) })
+            let is_still = at && (size || options.at.is_some());
+            Ok(Planned { path, estimate, is_still, is_film: size && !at })
         };
-        Ok(Self { planned: args.output.iter().zip(&exporters).map(estimate).collect::<Result<_>>()? })
+        let planned = args.output.iter().zip(&exporters).map(estimate).collect::<Result<_>>()?;
+        Ok(Self { planned, frame_time: args.fps.is_none().then_some(info.frame_time) })
     }
 
     /// Whether there is room for all of them. What is known to the byte and does not fit is refused; of what is not, it
@@ -79,6 +95,19 @@ impl<'a> Outputs<'a> {
         Ok(())
     }
 
+    /// Suggests a rate where frames are too far apart for a film, or closer than anybody looks.
+    pub fn suggest_pace(&self) {
+        let Some(frame_time) = self.frame_time else { return };
+        let suggestion = if frame_time > SMOOTH && self.planned.iter().any(|p| p.is_film) {
+            "--fps 25 makes a smoother film"
+        } else if frame_time < FINE && self.planned.iter().any(|p| !p.is_still) {
+            "--fps 24 makes fewer of them"
+        } else {
+            return;
+        };
+        note(format_args!("Frames are {} s apart; {suggestion}.", rounded(frame_time)));
+    }
+
     /// Says how much will be written, if it is much.
     pub fn announce(&self) {
         let total = self.planned.iter().fold(0u64, |sum, p| sum.saturating_add(p.estimate.bytes()));
@@ -91,7 +120,7 @@ impl<'a> Outputs<'a> {
 
     /// Says what would be written of so many frames, a line for each output.
     pub fn tell(&self, frames: u64) {
-        for Planned { path, estimate, is_still } in &self.planned {
+        for Planned { path, estimate, is_still, .. } in &self.planned {
             let frames = if *is_still { 1 } else { frames };
             say(format_args!("{}: {}, {}", path.display(), counted(frames, "frame"), size(*estimate)));
         }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use sprung::{Code, Energy, Error, Params, Result, Simulation, Snapshot};
+use sprung::{Energy, Error, Params, Result, Simulation, Snapshot};
 use sprung_io::checkpoint::Recording;
 use sprung_io::files::{is_complete, remove_spools};
 use sprung_io::{Export, Frame, Mark, Options, RunInfo, Written};
@@ -38,15 +38,6 @@ pub struct Recorder {
     frames: u64,
 }
 
-/// Refuses a name that is given twice.
-pub fn check_names(outputs: &[PathBuf], plot: Option<&PathBuf>) -> Result<()> {
-    let mut names: Vec<&PathBuf> = outputs.iter().chain(plot).collect();
-    names.sort();
-    let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) else { return Ok(()) };
-    let error = Error::new(Code::Duplicate, "is given twice as an output");
-    Err(error.in_file(twice[0].display().to_string()).with_fix("give each output a name of its own"))
-}
-
 impl Recorder {
     /// Begins all files, before anything is simulated.
     pub fn open(
@@ -56,48 +47,50 @@ impl Recorder {
         options: &Options,
         from: u64,
     ) -> Result<Self> {
-        check_names(outputs, plot)?;
         let exporters = outputs.iter().map(|path| export::exporter_for(path)).collect::<Result<Vec<_>>>()?;
         let begin = |(path, exporter): (&PathBuf, &sprung_io::Exporter)| (exporter.open)(path, info, options);
         let exports = outputs.iter().zip(exporters).map(begin).collect::<Result<_>>()?;
-        // After the exports: an output that is asked for twice is refused, whatever it would hold.
         let plot = plot.map(|path| EnergyPlot::begin(path)).transpose()?;
         let title = format!("Energy: {}", info.title);
         Ok(Self { exports, plot, title, samples: Vec::new(), held: Vec::new(), from, frames: 0 })
     }
 
-    /// Goes on with the files of a run that was killed, at the marks of its checkpoint. An output that has got its name
-    /// already, as the run was over, is left as it is; gives how many there are to be completed.
-    pub fn resume(recording: &Recording, info: &RunInfo) -> Result<(Self, usize)> {
+    /// Goes on with the files of a run that was killed, at the marks of its checkpoint. An output that had been completed
+    /// already, as the run was over, is left as it is; gives those.
+    pub fn resume<'a>(recording: &'a Recording, info: &RunInfo) -> Result<(Self, Vec<&'a Path>)> {
         let Recording { plan, marks } = recording;
         let begun = SystemTime::UNIX_EPOCH + Duration::from_secs(plan.begun);
-        let is_over = |path: &Path, mark: &Mark| {
-            let is_over = plan.ended.is_some() && is_complete(path, begun);
-            if is_over {
-                // What it needed until then may be there still.
-                remove_spools(path, mark);
-            }
-            is_over
-        };
-        let mut exports = Vec::new();
+        let (mut exports, mut complete) = (Vec::new(), Vec::new());
         for (path, mark) in plan.outputs.iter().map(Path::new).zip(marks) {
             let exporter = export::exporter_for(path)?;
             let Some(resume) = exporter.resume else { return Err(Mark::strange(path)) };
-            if !is_over(path, mark) {
+            if plan.ended.is_some() && exporter.is_complete(path, mark, begun) {
+                // What it needed until then may be there still.
+                remove_spools(path, mark);
+                complete.push(path);
+            } else {
                 exports.push(resume(path, info, &plan.options, mark)?);
             }
         }
         let (mut plot, mut samples) = (None, Vec::new());
-        if let (Some(path), Some(mark)) = (plan.plot.as_ref().map(Path::new), marks.last())
-            && !is_over(path, mark)
-        {
-            let (resumed, so_far) = EnergyPlot::resume(path, mark)?;
-            (plot, samples) = (Some(resumed), so_far);
+        if let (Some(path), Some(mark)) = (plan.plot.as_ref().map(Path::new), marks.last()) {
+            if plan.ended.is_some() && is_complete(path, begun) {
+                remove_spools(path, mark);
+                complete.push(path);
+            } else {
+                let (resumed, so_far) = EnergyPlot::resume(path, mark)?;
+                (plot, samples) = (Some(resumed), so_far);
+            }
         }
-        let left = exports.len() + usize::from(plot.is_some());
         let title = format!("Energy: {}", info.title);
         let frames = plan.recorded.saturating_sub(plan.from);
-        Ok((Self { exports, plot, title, samples, held: Vec::new(), from: plan.from, frames }, left))
+        let recorder = Self { exports, plot, title, samples, held: Vec::new(), from: plan.from, frames };
+        Ok((recorder, complete))
+    }
+
+    /// Whether there is anything to write to.
+    pub fn is_empty(&self) -> bool {
+        self.exports.is_empty() && self.plot.is_none()
     }
 
     /// Whether no frame is held back.

@@ -39,7 +39,7 @@ pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
         frames: plan.last_frame + 1 - plan.from,
     };
     let resumed = Recorder::resume(&recording, &info);
-    let (recorder, left) = resumed.map_err(|error| match error.fix() {
+    let (recorder, complete) = resumed.map_err(|error| match error.fix() {
         // Where the files are is the likeliest thing to be wrong.
         None => error.with_fix(format!("the run was started in {}", plan.folder)),
         Some(_) => error,
@@ -47,9 +47,12 @@ pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
     if !args.quiet {
         tell(file, &saved, plan);
     }
-    if plan.ended.is_some() && left == 0 {
+    if plan.ended.is_some() && recorder.is_empty() {
         say(format_args!("{name}: the run is over and its files are complete; there is nothing left to do"));
         return Ok(());
+    }
+    if !args.quiet {
+        complete.iter().for_each(|path| note(format_args!("{} is complete already.", path.display())));
     }
     let every = args.every.map_or_else(|| args::every(&plan.every), Ok);
     let every =
@@ -65,7 +68,6 @@ pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
         frames: plan.last_frame,
         from: plan.from,
         fitted: None,
-        jumps: false,
     };
     // Completing files needs no further checkpoint: this one says all there is to know.
     let goes_on = plan.ended.is_none();

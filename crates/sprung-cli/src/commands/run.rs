@@ -10,7 +10,7 @@ use sprung_io::{RunInfo, Written, files};
 
 use super::checkpoints::Checkpoints;
 use super::outputs::{self, Outputs};
-use super::record::{Recorder, check_names};
+use super::record::Recorder;
 use super::resume;
 use super::show::describe;
 use crate::args::RunArgs;
@@ -20,9 +20,6 @@ use crate::source::{self, Begun};
 
 /// Simulated time when nothing is said, s.
 const DEFAULT_SECONDS: f64 = 10.0;
-
-/// Frames further apart than this make a film that visibly jumps, s.
-const SMOOTH: f64 = 1.0 / 15.0;
 
 /// A dt above this share of the sharp limit is warned of: the limit is computed from below.
 const WARNING_SHARE: f64 = 0.95;
@@ -55,6 +52,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     let recorder = Recorder::open(&args.output, args.plot.as_ref(), &info, &options, plan.from)?;
     if !args.quiet {
         plan.announce();
+        outputs.suggest_pace();
         outputs.announce();
     }
     warn_of_large_dt(&mut simulation);
@@ -166,9 +164,11 @@ fn check_times(args: &RunArgs, plan: &Plan) -> Result<()> {
 
 /// Says what would be done. Of the places to write it looks whether they can be written, and leaves them as they are.
 fn dry_run(args: &RunArgs, plan: &Plan, name: &str, outputs: &Outputs<'_>) -> Result<()> {
-    check_names(&args.output, args.plot.as_ref())?;
     args.output.iter().chain(&args.plot).try_for_each(|path| files::check(path))?;
-    plan.announce();
+    if !args.quiet {
+        plan.announce();
+        outputs.suggest_pace();
+    }
     let steps = plan.steps_per_frame * plan.frames;
     say(format_args!(
         "{name}: {}, {} of {} s, {} s simulated",
@@ -195,8 +195,6 @@ pub struct Plan {
     pub from: u64,
     /// The frame rate that dt was fitted to, and dt as it was.
     pub fitted: Option<(f64, f64)>,
-    /// A film of these frames will jump.
-    pub jumps: bool,
 }
 
 impl Plan {
@@ -218,15 +216,13 @@ impl Plan {
             return Err(Error::new(Code::TooLarge, sentence).in_file("--seconds"));
         }
         let fitted = args.fps.filter(|_| dt != params.dt).map(|fps| (fps, params.dt));
-        let film = args.output.iter().any(|path| path.extension().is_some_and(|e| e == "gif" || e == "mp4"));
-        let jumps = film && args.fps.is_none() && frame_time > SMOOTH;
         let frames = args.frames.unwrap_or(frames as u64);
         let from = args.from.unwrap_or(0);
         if from > frames {
             let sentence = format!("is frame {from}, and the last one is {frames}");
             return Err(Error::new(Code::OutOfRange, sentence).in_file("--from"));
         }
-        Ok(Self { start: simulation.now().1, dt, steps_per_frame, frames, from, fitted, jumps })
+        Ok(Self { start: simulation.now().1, dt, steps_per_frame, frames, from, fitted })
     }
 
     fn announce(&self) {
@@ -239,10 +235,6 @@ impl Plan {
                 rounded(dt),
                 rounded(fps)
             ));
-        }
-        if self.jumps {
-            let frame_time = rounded(self.dt * self.steps_per_frame as f64);
-            note(format_args!("Frames are {frame_time} s apart; --fps 25 makes a smoother film."));
         }
     }
 }

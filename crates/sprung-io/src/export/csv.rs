@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sprung::{Result, Snapshot};
 
-use super::{Estimate, Export, Exporter, Frame, Mark, Options, Progress, RunInfo, Written};
+use super::{Estimate, Export, Exporter, Frame, Mark, Options, Progress, RunInfo, Writes, Written};
 use crate::files::{PartialFile, write_error};
 
 /// `.csv`: a table of positions and velocities. Numbers read back to the same float32, times to the same float64.
@@ -13,6 +13,7 @@ pub const CSV: Exporter = Exporter {
     ending: "csv",
     description: "a table: frame,time,point,x,y,z,vx,vy,vz (s, m, m/s)",
     heeds: &[],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),

@@ -53,6 +53,8 @@ pub struct Part {
     pub vertices: Range<usize>,
     /// Corners, counted from the part's first vertex, counter-clockwise seen from the front; none for points.
     pub triangles: Vec<[u32; 3]>,
+    /// How many triangles each face is, as in [`Surface::fans`].
+    pub fans: Vec<u32>,
     /// Whether the triangles enclose something, and need to be seen from outside only.
     pub is_closed: bool,
     /// Display colour, sRGB.
@@ -157,6 +159,14 @@ impl Geometry {
             Springs::Tubes => geometry.add_tubes(run),
         }
         Ok(geometry)
+    }
+
+    /// What mesh files hold, and point caches that fit them: springs are left out unless they are asked for.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_meshes(run: &RunInfo, options: &Options) -> Result<Self> {
+        Self::new(run, options, options.springs.unwrap_or(Springs::None))
     }
 
     /// What becomes of springs: what the user says, or else lines where a body that is exported has no surface.
@@ -293,7 +303,7 @@ impl Geometry {
         let on_points = |triangle: &[u32; 3]| triangle.map(|corner| place_of[(corner - first) as usize]);
         let mut triangles: Vec<[u32; 3]> = corners().map(on_points).collect();
         let mut count = sources.iter().map(|source| source.points(model).count()).sum();
-        for (number, surface) in weighted {
+        for &(number, surface) in &weighted {
             let before = count as u32;
             let own = surface.triangles.iter();
             triangles.extend(own.map(|triangle| triangle.map(|corner| before + corner)));
@@ -309,6 +319,7 @@ impl Geometry {
             body: Some(index),
             vertices,
             triangles,
+            fans: fans_of(plain.iter().chain(&weighted).map(|(_, surface)| *surface)),
             is_closed: !surfaces.is_empty() && surfaces.iter().all(is_skin),
             colour: rgb(BODY_COLOURS[index % BODY_COLOURS.len()]),
         });
@@ -365,6 +376,7 @@ impl Geometry {
                 body: None,
                 vertices: start..end,
                 triangles: Vec::new(),
+                fans: Vec::new(),
                 is_closed: false,
                 colour: rgb(SPRING_COLOUR),
             });
@@ -389,6 +401,7 @@ impl Geometry {
             body: None,
             vertices,
             triangles: triangles.collect(),
+            fans: Vec::new(),
             is_closed: true,
             colour: rgb(SPRING_COLOUR),
         });
@@ -407,6 +420,18 @@ impl Source {
             }
         }
     }
+}
+
+/// The fans of surfaces, one after the other; none if all of their faces are triangles.
+fn fans_of<'a>(surfaces: impl Iterator<Item = &'a Surface> + Clone) -> Vec<u32> {
+    if surfaces.clone().all(|surface| surface.fans.is_empty()) {
+        return Vec::new();
+    }
+    let of = |surface: &Surface| match surface.fans.is_empty() {
+        true => vec![1; surface.triangles.len()],
+        false => surface.fans.clone(),
+    };
+    surfaces.flat_map(of).collect()
 }
 
 /// The bodies that are exported, as indices in the model's order.

@@ -11,7 +11,9 @@ use sprung::{Code, Error, Result};
 
 use super::numbers::{big, write_all};
 use super::pc2::cached;
-use super::{Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Written};
+use super::{
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Writes, Written,
+};
 use crate::files::{PartialFile, write_error};
 use crate::pack::{Pack, Unpack};
 
@@ -20,6 +22,7 @@ pub const MDD: Exporter = Exporter {
     ending: "mdd",
     description: "a point cache with the time of each frame, for Blender, Maya and LightWave",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),

@@ -1,11 +1,14 @@
 //! Motion out: one file per format, chosen by the ending of the file's name.
 
+mod apart;
 mod colour;
 mod csv;
+mod faces;
 pub mod geometry;
 mod gltf;
 mod mark;
 mod mdd;
+mod mesh_files;
 mod npz;
 mod numbers;
 mod obj;
@@ -21,11 +24,13 @@ mod vtp;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 use sprung::energy::Energy;
 use sprung::{Code, Error, Model, Params, Result, Snapshot};
 
+pub use apart::{Writes, check_apart};
 pub use csv::CSV;
 pub use geometry::Geometry;
 pub use gltf::GLB;
@@ -37,6 +42,8 @@ pub use pc2::PC2;
 pub use ply::PLY;
 pub use usd::{USDA, USDC, USDZ};
 pub use vtk::VTK;
+
+use crate::files;
 
 /// What an exporter may want to know about a run before its first frame.
 #[derive(Clone, Debug)]
@@ -210,6 +217,8 @@ pub struct Exporter {
     pub description: &'static str,
     /// The options it takes account of.
     pub heeds: &'static [Heeds],
+    /// Where it writes.
+    pub writes: Writes,
     /// How many bytes it will take for [`RunInfo::frames`] frames. It writes nothing, and refuses what `open` refuses of
     /// run and options.
     pub estimate: fn(&RunInfo, &Options) -> Result<Estimate>,
@@ -221,6 +230,18 @@ pub struct Exporter {
     /// What is written after that is, byte for byte, what would have been written without the interruption, even if that
     /// came in the middle of [`Export::finish`].
     pub resume: Option<Resume>,
+}
+
+impl Exporter {
+    /// Whether an output that was being completed when the run was killed had been completed before that. `begun` is when
+    /// the run began.
+    pub fn is_complete(&self, path: &Path, mark: &Mark, begun: SystemTime) -> bool {
+        match self.writes {
+            Writes::Sequence => sequence::is_complete(path, mark, begun),
+            // The list of a folder's files gets its name when they are all there.
+            Writes::File | Writes::FileAndFolder => files::is_complete(path, begun),
+        }
+    }
 }
 
 /// See [`Exporter::resume`].

@@ -5,13 +5,12 @@
 //! temporary files beside it and are moved behind the positions when the run is over.
 //!
 //! A full disk costs the frame that did not fit and no other. The move takes no more room than it frees, for it goes from
-//! the end to the start and shortens the temporary file as it goes; the little that is needed besides is set aside at
-//! the start.
+//! the end to the start and shortens the temporary file as it goes; the little that is needed besides is set aside
+//! beforehand.
 //!
 //! In a run with checkpoints the temporary files have names, to be there after a kill, and are copied, not moved: a kill in
 //! the middle must leave them whole. Only where the disk is full for that they are moved after all.
 
-use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -19,16 +18,17 @@ use std::path::Path;
 use crc32fast::Hasher;
 use sprung::{Result, Vec3};
 
-use super::spool::{PIECE_BYTES, put};
+use super::spool::{PIECE_BYTES, Reserve, put, room_to_put};
 use super::stored_zip::{self, StoredZip, header_bytes};
-use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Written};
-use crate::files::{PartialFile, spool_beside, write_error};
+use super::{Estimate, Export, Exporter, FileMark, Frame, Mark, Options, Progress, RunInfo, Writes, Written};
+use crate::files::{PartialFile, write_error};
 
 /// `.npz`: arrays `time`, `positions` and `velocities` (frames, points, 3), `springs` and `mass`.
 pub const NPZ: Exporter = Exporter {
     ending: "npz",
     description: "NumPy arrays: time, positions, velocities, springs, mass (s, m, m/s, -, kg)",
     heeds: &[],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),
@@ -36,8 +36,6 @@ pub const NPZ: Exporter = Exporter {
 
 /// Length of every `.npy` header: room for any shape, and a multiple of 64 as the format asks.
 const NPY_HEADER_BYTES: usize = 128;
-/// Room on the disk that is set aside: for the pieces in flight and for the archive's directory.
-const RESERVE_BYTES: usize = 4 * PIECE_BYTES;
 
 /// What the temporary files hold.
 const VELOCITIES: &str = "velocities";
@@ -48,8 +46,8 @@ struct NpzExport {
     archive: StoredZip<PartialFile>,
     velocities: PartialFile,
     times: PartialFile,
-    /// Room on the disk, given back when the archive is completed.
-    reserve: File,
+    /// For what it takes to move the rest behind the positions, and for the archive's directory.
+    reserve: Reserve,
     points: u64,
     frames: u64,
     /// Where the positions' numbers begin; what lies before is filled in when the archive is completed.
@@ -95,6 +93,8 @@ fn resume(path: &Path, run: &RunInfo, _: &Options, mark: &Mark) -> Result<Box<dy
     }
     // Everything before the positions is written anew: completing the file had perhaps begun.
     let mut export = NpzExport::begin(path, run, archive, velocities, times)?;
+    let room = room_to_put(tally_of_velocities.bytes);
+    export.reserve.grow_to(room).map_err(|error| write_error(path, &error))?;
     export.whole =
         Tallies { times: tally_of_times, positions: tally_of_positions, velocities: tally_of_velocities };
     export.frames = frames;
@@ -111,7 +111,7 @@ impl NpzExport {
         times: PartialFile,
     ) -> Result<Self> {
         let mut archive = StoredZip::new(file);
-        let mut reserve = spool_beside(path)?;
+        let mut reserve = Reserve::beside(path)?;
         begin(&mut archive, &mut reserve, run).map_err(|error| write_error(path, &error))?;
         let (points, whole) = (run.model.point_count() as u64, Tallies::default());
         let head = head_bytes(run);
@@ -142,9 +142,8 @@ fn estimate(run: &RunInfo, _: &Options) -> Result<Estimate> {
 }
 
 /// Sets room aside, writes what is known at the start, and begins the positions.
-fn begin(archive: &mut StoredZip<PartialFile>, reserve: &mut File, run: &RunInfo) -> io::Result<()> {
-    // Not zeros: some file systems take no room for those.
-    reserve.write_all(&vec![0xA5; RESERVE_BYTES])?;
+fn begin(archive: &mut StoredZip<PartialFile>, reserve: &mut Reserve, run: &RunInfo) -> io::Result<()> {
+    reserve.grow_to(room_to_put(0))?;
 
     let springs = run.model.springs();
     let ends = springs.iter().flatten().map(|end| end.to_le_bytes());
@@ -187,6 +186,7 @@ impl Export for NpzExport {
 impl NpzExport {
     fn take(&mut self, frame: &Frame<'_>) -> io::Result<()> {
         let mut tallies = self.whole.clone();
+        self.reserve.grow_to(room_to_put(tallies.velocities.bytes + 12 * self.points))?;
         tallies.times.write(&mut self.times, std::iter::once(frame.snapshot.time.to_le_bytes()))?;
         tallies.positions.write(self.archive.out(), components(&frame.snapshot.positions))?;
         tallies.velocities.write(&mut self.velocities, components(&frame.snapshot.velocities))?;
@@ -211,12 +211,12 @@ impl NpzExport {
 
     /// Completes the archive, and gives it and the temporary files.
     fn complete(self, progress: &mut Progress<'_>) -> io::Result<(PartialFile, [PartialFile; 2])> {
-        let Self { mut archive, mut velocities, mut times, reserve, points, frames, head, whole } = self;
+        let Self { mut archive, mut velocities, mut times, mut reserve, points, frames, head, whole } = self;
         // Give up what does not belong to a whole frame, and the room that was set aside.
         archive.out().roll_back()?;
         velocities.roll_back_to(whole.velocities.bytes)?;
         times.roll_back_to(whole.times.bytes)?;
-        drop(reserve);
+        reserve.give_back()?;
 
         let start = head - NPY_HEADER_BYTES as u64;
         end_array(&mut archive, start, "<f4", &[frames, points, 3], whole.positions)?;

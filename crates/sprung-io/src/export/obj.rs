@@ -1,59 +1,40 @@
 //! OBJ: a text file for each frame, which everything reads.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use sprung::Result;
 
 use super::geometry::Part;
-use super::sequence::Sequence;
-use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Up,
-    Written,
-};
+use super::mesh_files::{Writer, begin};
+use super::{Estimate, Exporter, Geometry, Heeds, Options, RunInfo, Up, Writes};
 
 /// `.obj`: a mesh file for each frame; numbers read back to the same float32.
 pub const OBJ: Exporter = Exporter {
     ending: "obj",
     description: "meshes, one file for each frame: NAME.0000.obj and so on",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::Sequence,
     estimate,
-    open,
-    resume: Some(resume),
+    open: |path, run, options| begin(path, run, options, None, format),
+    resume: Some(|path, run, options, mark| begin(path, run, options, Some(mark), format)),
 };
 
-struct ObjExport {
-    files: Sequence,
-    geometry: Geometry,
-    /// What is the same in every file: the comment at its head, and the faces and lines of each part.
-    head: String,
-    title: String,
-}
-
-fn geometry(run: &RunInfo, options: &Options) -> Result<Geometry> {
-    Geometry::new(run, options, options.springs.unwrap_or(Springs::None))
-}
-
-fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let geometry = geometry(run, options)?;
-    let head = unit_and_axes(options);
-    Ok(Box::new(ObjExport { files: Sequence::begin(path)?, geometry, head, title: one_line(&run.title) }))
-}
-
-fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
-    let geometry = geometry(run, options)?;
-    let files = mark.sequence_of(path)?;
-    let head = unit_and_axes(options);
-    Ok(Box::new(ObjExport { files, geometry, head, title: one_line(&run.title) }))
+fn format(run: &RunInfo, options: &Options, _: &Geometry) -> Writer {
+    let (title, head) = (one_line(&run.title), unit_and_axes(options));
+    Box::new(move |out, geometry, frame| {
+        writeln!(out, "# {title}")?;
+        writeln!(out, "# frame {} at {} s; {head}", frame.index, frame.snapshot.time)?;
+        write_geometry(out, geometry)
+    })
 }
 
 /// Numbers of about nine characters; corners as long as the numbers of the vertices.
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
-    let geometry = geometry(run, options)?;
+    let geometry = Geometry::of_meshes(run, options)?;
     let vertices = geometry.vertex_count() as u64;
     let corner = 1 + u64::from(vertices.max(1).ilog10());
-    let faces = 3 * geometry.triangle_count() as u64 + 2 * geometry.lines().len() as u64;
-    Ok(Estimate::About(run.frames * (150 + vertices * 34 + faces * (corner + 2))))
+    let corners = (geometry.corner_count() + 2 * geometry.lines().len()) as u64;
+    Ok(Estimate::About(run.frames * (150 + vertices * 34 + corners * (corner + 2))))
 }
 
 /// Which unit and which axes a file has, for people.
@@ -74,27 +55,6 @@ pub(super) fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-impl Export for ObjExport {
-    fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
-        let Self { files, geometry, head, title } = self;
-        geometry.take(frame);
-        files.write(frame.index, |out| {
-            writeln!(out, "# {title}")?;
-            writeln!(out, "# frame {} at {} s; {head}", frame.index, frame.snapshot.time)?;
-            write_geometry(out, geometry)
-        })?;
-        Ok(())
-    }
-
-    fn finish(self: Box<Self>, _: &mut Progress<'_>) -> Result<Written> {
-        self.files.finish()
-    }
-
-    fn mark(&mut self) -> Result<Mark> {
-        Ok(Mark::of_sequence(&mut self.files))
-    }
-}
-
 /// An object for each part, and one for the lines. Vertices count from 1 and through all parts.
 fn write_geometry(out: &mut impl Write, geometry: &Geometry) -> io::Result<()> {
     let mut digits = zmij::Buffer::new();
@@ -113,11 +73,11 @@ fn write_geometry(out: &mut impl Write, geometry: &Geometry) -> io::Result<()> {
             out.write_all(b"s 1\n")?; // smooth
         }
         let first = 1 + part.vertices.start as u64;
-        for triangle in &part.triangles {
+        for face in part.faces() {
             out.write_all(b"f")?;
-            for corner in triangle {
+            for corner in face.corners() {
                 out.write_all(b" ")?;
-                out.write_all(whole.of(first + u64::from(*corner)))?;
+                out.write_all(whole.of(first + u64::from(corner)))?;
             }
             out.write_all(b"\n")?;
         }

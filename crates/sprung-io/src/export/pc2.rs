@@ -15,7 +15,7 @@ use sprung::{Code, Error, Result};
 
 use super::numbers::{little, write_all};
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Writes, Written,
 };
 use crate::files::{PartialFile, write_error};
 use crate::pack::{Pack, Unpack};
@@ -25,6 +25,7 @@ pub const PC2: Exporter = Exporter {
     ending: "pc2",
     description: "a point cache: the vertices of the .obj of the same options, for Blender and 3ds Max",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),
@@ -70,9 +71,9 @@ fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
 /// What a point cache holds: the vertices of a mesh file that was written with the same options.
 ///
 /// # Errors
-/// As [`Geometry::new`], and [`Code::TooLarge`] for more frames or vertices than the 32 bits of the formats can count.
+/// As [`Geometry::of_meshes`], and [`Code::TooLarge`] for more frames or vertices than the 32 bits of the formats can count.
 pub(super) fn cached(run: &RunInfo, options: &Options) -> Result<Geometry> {
-    let geometry = Geometry::new(run, options, options.springs.unwrap_or(Springs::None))?;
+    let geometry = Geometry::of_meshes(run, options)?;
     let most = i32::MAX as u64;
     for (count, what) in [(run.frames, "frames"), (geometry.vertex_count() as u64, "vertices")] {
         if count > most {

@@ -1,62 +1,48 @@
 //! PLY: a binary file for each frame, with velocities, normals and colours as properties.
 //!
 //! Little-endian. Vertices have `x y z`, `nx ny nz` where there are triangles, `vx vy vz`, `red green blue` and `point`, the
-//! number of the point that they are, or −1; faces are triangles; springs are edges, with `vertex1` and `vertex2`.
+//! number of the point that they are, or −1; faces are polygons; springs are edges, with `vertex1` and `vertex2`.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::path::Path;
 
 use sprung::{Result, Vec3};
 
+use super::mesh_files::{Writer, begin};
 use super::numbers::{little, write_all};
 use super::obj::{one_line, unit_and_axes};
-use super::sequence::Sequence;
 use super::vtp::number;
-use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
-};
+use super::{Estimate, Exporter, Geometry, Heeds, Options, RunInfo, Writes};
 
 /// `.ply`: a binary mesh file for each frame.
 pub const PLY: Exporter = Exporter {
     ending: "ply",
     description: "binary meshes with normals, velocities and colours, one file for each frame",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::Sequence,
     estimate,
-    open,
-    resume: Some(resume),
+    open: |path, run, options| begin(path, run, options, None, format),
+    resume: Some(|path, run, options, mark| begin(path, run, options, Some(mark), format)),
 };
 
-struct PlyExport {
-    files: Sequence,
-    geometry: Geometry,
-    normals: Vec<Vec3>,
-    header: String,
-}
-
-fn geometry(run: &RunInfo, options: &Options) -> Result<Geometry> {
-    Geometry::new(run, options, options.springs.unwrap_or(Springs::None))
-}
-
-fn open(path: &Path, run: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
-    let geometry = geometry(run, options)?;
-    let header = header(run, options, &geometry);
-    Ok(Box::new(PlyExport { files: Sequence::begin(path)?, geometry, normals: Vec::new(), header }))
-}
-
-fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<Box<dyn Export>> {
-    let geometry = geometry(run, options)?;
-    let header = header(run, options, &geometry);
-    let files = mark.sequence_of(path)?;
-    Ok(Box::new(PlyExport { files, geometry, normals: Vec::new(), header }))
+fn format(run: &RunInfo, options: &Options, geometry: &Geometry) -> Writer {
+    let (header, mut normals) = (header(run, options, geometry), Vec::new());
+    Box::new(move |out, geometry, _| {
+        if has_normals(geometry) {
+            geometry.normals(&mut normals);
+        }
+        out.write_all(header.as_bytes())?;
+        write_geometry(out, geometry, &normals)
+    })
 }
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
-    let geometry = geometry(run, options)?;
+    let geometry = Geometry::of_meshes(run, options)?;
     let vertex = 12 + if has_normals(&geometry) { 12 } else { 0 } + 12 + 3 + 4;
     let bytes = header(run, options, &geometry).len()
         + geometry.vertex_count() * vertex
-        + geometry.triangle_count() * 13
+        + geometry.face_count()
+        + geometry.corner_count() * 4
         + geometry.lines().len() * 8;
     Ok(Estimate::Exact(run.frames * bytes as u64))
 }
@@ -83,36 +69,13 @@ fn header(run: &RunInfo, options: &Options, geometry: &Geometry) -> String {
         line(format_args!("property uchar {name}"));
     }
     line(format_args!("property int point"));
-    line(format_args!("element face {}", geometry.triangle_count()));
+    line(format_args!("element face {}", geometry.face_count()));
     line(format_args!("property list uchar int vertex_indices"));
     if !geometry.lines().is_empty() {
         line(format_args!("element edge {}", geometry.lines().len()));
         line(format_args!("property int vertex1\nproperty int vertex2"));
     }
     header + "end_header\n"
-}
-
-impl Export for PlyExport {
-    fn frame(&mut self, frame: &Frame<'_>) -> Result<()> {
-        let Self { files, geometry, normals, header } = self;
-        geometry.take(frame);
-        if has_normals(geometry) {
-            geometry.normals(normals);
-        }
-        files.write(frame.index, |out| {
-            out.write_all(header.as_bytes())?;
-            write_geometry(out, geometry, normals)
-        })?;
-        Ok(())
-    }
-
-    fn finish(self: Box<Self>, _: &mut Progress<'_>) -> Result<Written> {
-        self.files.finish()
-    }
-
-    fn mark(&mut self) -> Result<Mark> {
-        Ok(Mark::of_sequence(&mut self.files))
-    }
 }
 
 fn write_geometry(out: &mut impl Write, geometry: &Geometry, normals: &[Vec3]) -> io::Result<()> {
@@ -141,13 +104,12 @@ fn write_geometry(out: &mut impl Write, geometry: &Geometry, normals: &[Vec3]) -
         };
         write_all(out, vertices.map(record))?;
     }
-    let face = |triangle: [u32; 3]| {
-        let mut record = [3; 13];
-        for (corner, place) in triangle.iter().zip(record[1..].chunks_exact_mut(4)) {
-            place.copy_from_slice(&corner.to_le_bytes());
-        }
-        record
-    };
-    write_all(out, geometry.triangles().map(face))?;
+    let mut record = Vec::new();
+    for face in geometry.faces() {
+        record.clear();
+        record.push(face.len() as u8); // at most 255: see `MOST_CORNERS` of the engine's faces
+        face.corners().for_each(|corner| record.extend(corner.to_le_bytes()));
+        out.write_all(&record)?;
+    }
     write_all(out, geometry.lines().iter().flat_map(|line| line.ends).map(u32::to_le_bytes))
 }

@@ -8,11 +8,12 @@
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
-use sprung::Result;
+use sprung::{Code, Error, Result};
 
-use super::Written;
-use crate::files::{PartialFile, remove_beside, write_error};
+use super::{Mark, Written};
+use crate::files::{self, PartialFile, remove_beside, write_error};
 use crate::pack::{Pack, Unpack};
 
 /// A sequence being written. Dropped unfinished, the files that it wrote are removed.
@@ -42,10 +43,13 @@ impl Sequence {
     /// written over.
     ///
     /// # Errors
-    /// As [`PartialFile::create`], and for a memory that [`mark`](Self::mark) has not given.
+    /// As [`PartialFile::create`], [`sprung::Code::Unreadable`] if files that were written until then are gone or not as
+    /// long as they were, and for a memory that [`mark`](Self::mark) has not given.
     pub fn resume(path: &Path, memory: &mut Unpack<'_>) -> Result<Self> {
-        let (frames, bytes) = (memory.u64()?, memory.u64()?);
-        let range = if memory.bool()? { Some((memory.u64()?, memory.u64()?)) } else { None };
+        let marked = Marked::unpack(memory)?;
+        // Before the name is held: it would be let go if this fails, and the sequence then looks like a finished one.
+        marked.check(path, None)?;
+        let Marked { frames, bytes, range } = marked;
         Ok(Self { lock: PartialFile::create(path)?, range, frames, bytes, stays: true })
     }
 
@@ -116,13 +120,62 @@ impl Sequence {
 
     /// Removes the files of the sequence whose numbers are such.
     fn remove(&self, which: impl Fn(u64) -> bool) -> io::Result<()> {
-        let [before, after] = around(self.path());
-        remove_beside(self.path(), |name| {
-            let digits = name.strip_prefix(&*before)?.strip_suffix(&*after)?;
-            let number: u64 = digits.parse().ok()?;
-            Some(format!("{number:04}") == digits && which(number))
-        })
+        remove_beside(self.path(), |name| Some(which(number_of(self.path(), name)?)))
     }
+}
+
+/// What a mark says of a sequence.
+struct Marked {
+    frames: u64,
+    /// All files together.
+    bytes: u64,
+    /// First and last frame.
+    range: Option<(u64, u64)>,
+}
+
+impl Marked {
+    fn unpack(memory: &mut Unpack<'_>) -> Result<Self> {
+        let (frames, bytes) = (memory.u64()?, memory.u64()?);
+        let range = if memory.bool()? { Some((memory.u64()?, memory.u64()?)) } else { None };
+        Ok(Self { frames, bytes, range })
+    }
+
+    /// Whether the files of the frames are there, as long as they were; and no older than the run, where that is asked.
+    fn check(&self, path: &Path, begun: Option<SystemTime>) -> Result<()> {
+        let refused = |file: &Path, what: &str| {
+            let sentence = format!("cannot be gone on with: {} {what}", file.display());
+            Err(Error::new(Code::Unreadable, sentence).in_file(path.display().to_string()))
+        };
+        let mut bytes = 0u64;
+        for frame in self.range.into_iter().flat_map(|(first, last)| first..=last) {
+            let file = numbered(path, &format!("{frame:04}"));
+            let found = match file.symlink_metadata() {
+                Ok(found) if found.is_file() => found,
+                Ok(_) => return refused(&file, "is not a regular file"),
+                Err(_) => return refused(&file, "is not there"),
+            };
+            let is_older = |begun| found.modified().is_ok_and(|written| written < begun);
+            if begun.is_some_and(is_older) {
+                return refused(&file, "is older than the run");
+            }
+            bytes = bytes.saturating_add(found.len());
+        }
+        if bytes == self.bytes {
+            return Ok(());
+        }
+        let sentence = format!(
+            "cannot be gone on with: its files have {bytes} bytes together, and the run had written {}",
+            self.bytes
+        );
+        Err(Error::new(Code::Unreadable, sentence).in_file(path.display().to_string()))
+    }
+}
+
+/// Whether a sequence that was being completed when the run was killed had been completed before that: nobody holds its
+/// name, and its files are those of the mark, written since the run began.
+pub fn is_complete(path: &Path, mark: &Mark, begun: SystemTime) -> bool {
+    let marked = Marked::unpack(&mut Unpack::new(&mark.memory));
+    files::has_no_partial(path) && marked.is_ok_and(|marked| marked.check(path, Some(begun)).is_ok())
 }
 
 impl Drop for Sequence {
@@ -143,6 +196,19 @@ fn numbered(path: &Path, number: &str) -> PathBuf {
         name.push(ending);
     }
     path.with_file_name(name)
+}
+
+/// Whether a file of this name, in the folder of `path`, is of the sequence that is called so.
+pub fn has(path: &Path, name: &str) -> bool {
+    number_of(path, name).is_some()
+}
+
+/// The frame that a file of this name has in the sequence that is called `path`.
+fn number_of(path: &Path, name: &str) -> Option<u64> {
+    let [before, after] = around(path);
+    let digits = name.strip_prefix(&*before)?.strip_suffix(&*after)?;
+    let number: u64 = digits.parse().ok()?;
+    (format!("{number:04}") == digits).then_some(number)
 }
 
 /// What is before and after the number in the names of a sequence's files.

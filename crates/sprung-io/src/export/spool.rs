@@ -9,11 +9,25 @@ use sprung::Result;
 use super::Progress;
 use crate::files::{PartialFile, spool_beside};
 
-/// Bytes that are written or moved at once.
+/// Bytes that are written or moved at once, at most.
 pub const PIECE_BYTES: usize = 1 << 15;
+/// What disks are given out in.
+const BLOCK_BYTES: u64 = 1 << 12;
+
+/// Bytes that are moved at once where there are so many: few of few, as room is needed for them.
+fn piece_of(bytes: u64) -> u64 {
+    (bytes / 64).next_multiple_of(BLOCK_BYTES).clamp(BLOCK_BYTES, PIECE_BYTES as u64)
+}
+
+/// Room that it takes at most to [`put`] so many bytes behind others where they have to be moved, and a directory of a block
+/// behind them: the piece that is there twice for a moment, and the blocks at the ends of everything, which are not full.
+/// Not less for less.
+pub fn room_to_put(bytes: u64) -> u64 {
+    5 * piece_of(bytes)
+}
 
 /// Puts the first `bytes` of a temporary file into `out`, from `start` on, where nothing may follow: copies one with a name,
-/// which a run that is killed needs, as long as there is room; moves any other. Moving needs room for one piece.
+/// which a run that is killed needs, as long as there is room; moves any other, for which [`room_to_put`] will do.
 pub fn put(
     spool: &mut PartialFile,
     bytes: u64,
@@ -44,10 +58,11 @@ fn transfer(
     is_moved: bool,
     progress: &mut Progress<'_>,
 ) -> io::Result<()> {
+    let most = if is_moved { piece_of(bytes) } else { PIECE_BYTES as u64 };
     let mut piece = vec![0; PIECE_BYTES];
     let mut left = bytes;
     while left > 0 {
-        let from = (left - 1) / PIECE_BYTES as u64 * PIECE_BYTES as u64;
+        let from = (left - 1) / most * most;
         let piece = &mut piece[..(left - from) as usize];
         spool.read_at(from, piece)?;
         out.seek(SeekFrom::Start(start + from))?;
@@ -79,6 +94,12 @@ impl Reserve {
         // Not zeros: some file systems take no room for those.
         io::copy(&mut io::repeat(0xA5).take(bytes), &mut self.0)?;
         Ok(())
+    }
+
+    /// Sets as much more aside as makes it so many bytes.
+    pub fn grow_to(&mut self, bytes: u64) -> io::Result<()> {
+        let length = self.0.metadata()?.len();
+        self.add(bytes.saturating_sub(length))
     }
 
     /// Gives all of it back.

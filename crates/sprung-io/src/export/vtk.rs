@@ -1,7 +1,7 @@
 //! VTK: a `.pvd` file that lists every frame with its time, and beside it a folder with the frames' `.vtp` files.
 //!
 //! A frame is one or two of them. `points` holds the simulated points with `velocity`, `force`, `mass`, `fixed` and
-//! `body`, and the springs as lines with `strain` and `tension`. `surface` holds the triangles, where there are any, with
+//! `body`, and the springs as lines with `strain` and `tension`. `surface` holds the faces, where there are any, with
 //! `velocity`, `normal` and `body`: they are apart, as a surface may have vertices that are no points, on which no force
 //! acts.
 //!
@@ -15,7 +15,8 @@ use sprung::{Code, Error, Result};
 
 use super::vtp::Layer;
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Writes,
+    Written,
 };
 use crate::files::{Folder, PartialFile, spool_beside, write_error};
 use crate::pack::{Pack, Unpack};
@@ -26,6 +27,7 @@ pub const VTK: Exporter = Exporter {
     description: "for ParaView: springs with strain and tension, points with force and velocity, surfaces; a .vtp for \
                   each frame in a folder of that name",
     heeds: &[Heeds::Geometry, Heeds::Springs],
+    writes: Writes::FileAndFolder,
     estimate,
     open,
     resume: Some(resume),

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use sprung::force::FORCES;
 use sprung::{Code, DVec3, Error, Model, Result, SpringReading, Vec3};
 
+use super::faces::Face;
 use super::numbers::{little, write_all};
 use super::sequence::Sequence;
 use super::{Frame, Geometry, RunInfo, Written};
@@ -57,17 +58,18 @@ enum Cells {
 }
 
 impl Cells {
-    fn corners(self) -> usize {
+    /// How many corners they have together.
+    fn corners(self, geometry: &Geometry) -> usize {
         match self {
-            Self::Verts => 1,
-            Self::Lines => 2,
-            Self::Polys => 3,
+            Self::Verts => self.count(geometry),
+            Self::Lines => 2 * self.count(geometry),
+            Self::Polys => geometry.corner_count(),
         }
     }
 
     /// How many there are. Points are cells of their own only where nothing else would show them.
     fn count(self, geometry: &Geometry) -> usize {
-        let (lines, polys) = (geometry.lines().len(), geometry.triangle_count());
+        let (lines, polys) = (geometry.lines().len(), geometry.face_count());
         match self {
             Self::Verts if lines + polys == 0 => geometry.vertex_count(),
             Self::Verts => 0,
@@ -101,7 +103,7 @@ impl Content {
         match self {
             Self::Time => 1,
             Self::Strains | Self::Tensions => geometry.lines().len(),
-            Self::Corners(cells) => cells.corners() * cells.count(geometry),
+            Self::Corners(cells) => cells.corners(geometry),
             Self::Ends(cells) => cells.count(geometry),
             _ => geometry.vertex_count(),
         }
@@ -208,12 +210,11 @@ impl Layer {
     /// # Errors
     /// [`Code::TooLarge`].
     pub fn check(geometry: &Geometry) -> Result<()> {
-        let corners =
-            geometry.vertex_count().max(3 * geometry.triangle_count()).max(2 * geometry.lines().len());
+        let corners = geometry.vertex_count().max(geometry.corner_count()).max(2 * geometry.lines().len());
         if corners <= i32::MAX as usize {
             return Ok(());
         }
-        let sentence = format!("has {corners} corners of springs or triangles, and {} are allowed", i32::MAX);
+        let sentence = format!("has {corners} corners of springs or faces, and {} are allowed", i32::MAX);
         Err(Error::new(Code::TooLarge, sentence))
     }
 
@@ -294,11 +295,20 @@ impl Moment<'_> {
                 write_all(out, geometry.lines().iter().flat_map(|line| line.ends).map(u32::to_le_bytes))
             }
             Content::Corners(Cells::Polys) => {
-                write_all(out, geometry.triangles().flatten().map(u32::to_le_bytes))
+                write_all(out, geometry.faces().flat_map(Face::corners).map(u32::to_le_bytes))
+            }
+            Content::Ends(Cells::Polys) => {
+                let mut end = 0;
+                let ends = geometry.faces().map(|face| {
+                    end += face.len() as i32;
+                    end.to_le_bytes()
+                });
+                write_all(out, ends)
             }
             Content::Ends(cells) => {
-                let corners = cells.corners() as i32;
-                write_all(out, (1..=cells.count(geometry) as i32).map(|cell| (cell * corners).to_le_bytes()))
+                let count = cells.count(geometry);
+                let corners = cells.corners(geometry) / count.max(1);
+                write_all(out, (1..=count).map(|cell| ((cell * corners) as i32).to_le_bytes()))
             }
         }
     }

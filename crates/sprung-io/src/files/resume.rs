@@ -111,11 +111,15 @@ fn add(checksum: &mut Hasher, file: &mut impl Read, bytes: u64) -> io::Result<()
 /// gone, and a file of its name was written since the run began.
 pub fn is_complete(path: &Path, begun: SystemTime) -> bool {
     let Ok(target) = target_of(path) else { return false };
-    let partial_is_gone =
-        partial_of(path, &target, "").is_ok_and(|partial| partial.symlink_metadata().is_err());
     let written_since =
         target.metadata().and_then(|found| found.modified()).is_ok_and(|written| written >= begun);
-    partial_is_gone && written_since
+    has_no_partial(path) && written_since
+}
+
+/// Whether no partial file of this name is there.
+pub fn has_no_partial(path: &Path) -> bool {
+    let partial = target_of(path).and_then(|target| partial_of(path, &target, ""));
+    partial.is_ok_and(|partial| partial.symlink_metadata().is_err())
 }
 
 /// Removes what is left beside an output that has got its name: its mark says what there was.

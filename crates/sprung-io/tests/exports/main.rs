@@ -10,6 +10,7 @@ mod glb;
 mod npz;
 #[cfg(unix)]
 mod places;
+mod polygons;
 mod sequences;
 mod tables;
 mod usd;

@@ -63,6 +63,11 @@ fn number(value: &Value) -> f64 {
     }
 }
 
+/// An attribute that is the same at all times.
+pub fn integers(layer: &dyn AbstractData, path: &str) -> Vec<i32> {
+    ints(&field(layer, path, "default"))
+}
+
 fn ints(value: &Value) -> Vec<i32> {
     let Value::IntVec(ints) = value else { panic!("no integers: {value:?}") };
     ints.clone()

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use sprung::Result;
 use sprung_io::files::write_error;
 use sprung_io::{
-    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, PartialFile, Progress, RunInfo, Written,
+    Estimate, Export, Exporter, Frame, Heeds, Mark, Options, PartialFile, Progress, RunInfo, Writes, Written,
 };
 
 use super::png::no_frames;
@@ -22,6 +22,7 @@ pub const GIF: Exporter = Exporter {
     ending: "gif",
     description: "an animation that plays in real time and loops",
     heeds: &[Heeds::Size],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),
@@ -31,8 +32,6 @@ pub const GIF: Exporter = Exporter {
 const DEFAULT_SIZE: [u32; 2] = [800, 450];
 /// The shortest delay that browsers respect, hundredths of a second.
 const SHORTEST: u64 = 2;
-/// Fewer pictures than this, where there were more frames, would be no animation: then it plays in slow motion.
-const FEWEST: usize = 12;
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
     let pictures = (run.frames as f64).min(100.0 / SHORTEST as f64 * run.frame_time * run.frames as f64);
@@ -170,7 +169,7 @@ pub(super) fn lessons(first: usize, last: usize) -> Vec<usize> {
 ///
 /// Delays are whole hundredths, so each picture is shown until the rounded time of the next: what rounding takes from one
 /// the next gets back, and the animation keeps real time on average. Frames closer than two hundredths, which browsers
-/// would slow down fivefold, are left out. A motion too short for that is shown in slow motion, every frame.
+/// would slow down fivefold, are left out.
 pub(super) fn schedule(times: &[f64], frame_time: f64) -> Vec<(usize, u16)> {
     let Some(&start) = times.first() else { return Vec::new() };
     let end = times.last().map_or(start, |last| last + frame_time.max(0.0));
@@ -180,9 +179,6 @@ pub(super) fn schedule(times: &[f64], frame_time: f64) -> Vec<(usize, u16)> {
         if shown.last().is_none_or(|&(_, last)| at(time) >= last + SHORTEST) {
             shown.push((frame, at(time)));
         }
-    }
-    if shown.len() < FEWEST.min(times.len()) {
-        return (0..times.len()).map(|frame| (frame, 4)).collect();
     }
     let ends: Vec<u64> = shown.iter().skip(1).map(|&(_, begin)| begin).chain([at(end)]).collect();
     let delay = |(&(frame, begin), end): (&(usize, u64), u64)| {
@@ -244,10 +240,21 @@ mod tests {
 
     #[test]
     fn animations_keep_real_time() {
-        for step in [0.07, 0.11, 1.0 / 30.0, 1.0 / 60.0, 1.0 / 24.0, 0.005] {
-            let schedule = schedule(&times(240, step), step);
+        for (step, count) in [
+            (0.07, 240),
+            (0.11, 240),
+            (1.0 / 30.0, 240),
+            (1.0 / 60.0, 240),
+            (1.0 / 24.0, 240),
+            (0.005, 240),
+            // Short ones, of which few pictures are left.
+            (0.002_236, 91),
+            (1.0 / 60.0, 11),
+            (1e-6, 50),
+        ] {
+            let schedule = schedule(&times(count, step), step);
             let total: u64 = schedule.iter().map(|&(_, delay)| u64::from(delay)).sum();
-            let real = 240.0 * step * 100.0;
+            let real = count as f64 * step * 100.0;
             assert!((total as f64 - real).abs() <= 2.0, "step {step}: {total} instead of {real}");
             assert!(schedule.iter().all(|&(_, delay)| u64::from(delay) >= SHORTEST));
         }
@@ -264,7 +271,7 @@ mod tests {
     fn odd_motions_have_a_schedule_too() {
         assert_eq!(schedule(&[], 0.1), []);
         assert_eq!(schedule(&[3.0], 0.1), [(0, 10)]);
-        assert_eq!(schedule(&times(50, 1e-6), 1e-6).len(), 50);
+        assert_eq!(schedule(&times(50, 1e-6), 1e-6), [(0, 2)]);
         assert_eq!(schedule(&times(2, 1e6), 1e6), [(0, u16::MAX), (1, u16::MAX)]);
     }
 

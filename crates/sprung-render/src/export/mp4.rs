@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use sprung::{Code, Error, Result};
 use sprung_io::files::write_error;
-use sprung_io::{Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Written};
+use sprung_io::{
+    Estimate, Export, Exporter, Frame, Heeds, Options, PartialFile, Progress, RunInfo, Writes, Written,
+};
 
 use super::png::no_frames;
 use super::spool::Spool;
@@ -19,6 +21,7 @@ pub const MP4: Exporter = Exporter {
     ending: "mp4",
     description: "a film (needs ffmpeg)",
     heeds: &[Heeds::Size],
+    writes: Writes::File,
     estimate,
     open,
     resume: None,
@@ -34,7 +37,8 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const RATE_RANGE: (f64, f64) = (0.05, 1000.0);
 
 fn estimate(run: &RunInfo, options: &Options) -> Result<Estimate> {
-    Ok(about(options, DEFAULT_SIZE, 0.04 * run.frames as f64))
+    let pictures = (run.frames as f64).min(RATE_RANGE.1 * run.frame_time * run.frames as f64);
+    Ok(about(options, DEFAULT_SIZE, 0.04 * pictures))
 }
 
 fn open(path: &Path, info: &RunInfo, options: &Options) -> Result<Box<dyn Export>> {
@@ -91,10 +95,9 @@ impl Export for Film {
         if spool.times().is_empty() {
             return Err(no_frames(&path));
         }
-        let rate = 1.0 / spool.info().frame_time;
+        let (frames, rate) = shown(spool.times().len(), spool.info().frame_time);
         let mut writer = FilmWriter::begin(file, size, rate)?;
         let view = spool.view();
-        let frames: Vec<usize> = (0..spool.times().len()).collect();
         spool.draw(
             &view,
             &frames,
@@ -106,6 +109,13 @@ impl Export for Film {
         )?;
         writer.finish()
     }
+}
+
+/// Which frames are shown, and how many of them in a second: no more than players cope with, and in real time.
+fn shown(frames: usize, frame_time: f64) -> (Vec<usize>, f64) {
+    let rate = 1.0 / frame_time;
+    let every = (rate / RATE_RANGE.1).ceil().max(1.0);
+    ((0..frames).step_by(every as usize).collect(), rate / every)
 }
 
 /// A film that takes one picture after the other. Dropped unfinished, ffmpeg is ended and the file is removed.
@@ -241,5 +251,21 @@ impl Drop for Encoder {
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn films_keep_real_time() {
+        for (frames, frame_time) in [(100, 0.04), (1000, 0.001), (715, 0.000_279_551), (3, 1e-6)] {
+            let (shown, rate) = shown(frames, frame_time);
+            assert!(rate <= RATE_RANGE.1);
+            let (lasts, real) = (shown.len() as f64 / rate, frames as f64 * frame_time);
+            assert!((lasts - real).abs() < 1.0 / rate, "{lasts} s instead of {real} s");
+        }
+        assert_eq!(shown(3, 0.04), (vec![0, 1, 2], 25.0));
     }
 }

@@ -7,7 +7,7 @@ use sprung::{Code, Error, Params, Result, Snapshot};
 use sprung_io::files::write_error;
 use sprung_io::{
     Estimate, Export, Exporter, Frame, Heeds, Mark, Options, Pack, PartialFile, Progress, RunInfo, Unpack,
-    Written,
+    Writes, Written,
 };
 
 use super::{about, go_on, picture_size};
@@ -20,6 +20,7 @@ pub const PNG: Exporter = Exporter {
     ending: "png",
     description: "a picture of the last frame, or of the one nearest to --at",
     heeds: &[Heeds::Size, Heeds::At],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),

@@ -265,6 +265,7 @@ impl ModelBuilder {
             vertices: SurfaceVertices::Points,
             triangles,
             stands_for_body: false,
+            fans: Vec::new(),
         });
         Ok(())
     }
@@ -306,7 +307,36 @@ impl ModelBuilder {
             vertices: SurfaceVertices::Weighted(vertices),
             triangles,
             stands_for_body: false,
+            fans: Vec::new(),
         });
+        Ok(())
+    }
+
+    /// The triangles of the surface that was added last make faces together, as many in turn as `fans` says: see
+    /// [`Surface::fans`].
+    ///
+    /// # Errors
+    /// [`Code::Conflict`] if they are not all of its triangles, or no fans.
+    pub fn join_into_faces(&mut self, fans: Vec<u32>) -> Result<()> {
+        let Some(surface) = self.surfaces.last_mut() else {
+            return Err(Error::new(Code::Conflict, "there is no surface whose triangles could make faces"));
+        };
+        let mut rest = &surface.triangles[..];
+        for &fan in &fans {
+            let is_fan = |face: &&[[u32; 3]]| {
+                !face.is_empty()
+                    && face.windows(2).all(|two| two[1][0] == two[0][0] && two[1][1] == two[0][2])
+            };
+            if rest.split_off(..fan as usize).filter(is_fan).is_none() {
+                let sentence = format!("there are no {fan} triangles around one corner to make a face");
+                return Err(Error::new(Code::Conflict, sentence));
+            }
+        }
+        if !(rest.is_empty() || fans.is_empty()) {
+            let sentence = format!("{} triangles of the surface belong to no face", rest.len());
+            return Err(Error::new(Code::Conflict, sentence));
+        }
+        surface.fans = fans;
         Ok(())
     }
 

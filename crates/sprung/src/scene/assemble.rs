@@ -222,6 +222,7 @@ impl<'a> Assembly<'a> {
                 self.builder.add_surface(surface.kind, triangles)
             }
         }
+        .and_then(|()| self.builder.join_into_faces(surface.fans.clone()))
         .map_err(|error| replaced(error, &format!("{path}.mesh")))?;
         if surface.stands_for_body {
             self.builder.show_surface_alone();

@@ -15,9 +15,9 @@ use std::path::Path;
 use sprung::{Code, Error, Params, Result, Snapshot, Vec3};
 
 use self::document::{Bounds, Document};
-use super::spool::{PIECE_BYTES, Reserve, put};
+use super::spool::{Reserve, put, room_to_put};
 use super::{
-    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Up, Written,
+    Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Up, Writes, Written,
 };
 use crate::files::{PartialFile, write_error};
 use crate::pack::{Pack, Unpack};
@@ -27,6 +27,7 @@ pub const GLB: Exporter = Exporter {
     ending: "glb",
     description: "glTF: a clip of at most 257 frames, or the shape nearest to --at, for the web and game engines",
     heeds: &[Heeds::At, Heeds::Geometry, Heeds::Springs],
+    writes: Writes::File,
     estimate,
     open,
     resume: Some(resume),
@@ -129,6 +130,12 @@ fn resume(path: &Path, run: &RunInfo, options: &Options, mark: &Mark) -> Result<
     })
 }
 
+/// What so many frames take besides their shapes, at most.
+fn share(document: &Document, frames: u64) -> u64 {
+    let shapes = document.layout.frame_bytes() * frames;
+    document.tail_bytes(frames) + document.text_bytes(frames) + room_to_put(shapes)
+}
+
 /// All frames, as shapes that are blended.
 struct Clip {
     file: PartialFile,
@@ -148,8 +155,7 @@ impl Clip {
     /// One without frames.
     fn new(path: &Path, document: Document, file: PartialFile, data: PartialFile) -> Result<Self> {
         let mut reserve = Reserve::beside(path)?;
-        let around = document.tail_bytes(0) + document.text_bytes(0);
-        reserve.add(around + 2 * PIECE_BYTES as u64).map_err(|error| write_error(path, &error))?;
+        reserve.add(share(&document, 0)).map_err(|error| write_error(path, &error))?;
         Ok(Self { file, data, reserve, document, base: Vec::new(), bounds: Vec::new(), frames: 0 })
     }
 
@@ -164,7 +170,7 @@ impl Clip {
             self.count_in(shape);
         }
         self.data.seek(SeekFrom::End(0))?;
-        self.reserve.add(self.share(frames) - self.share(0))
+        self.reserve.grow_to(share(&self.document, frames))
     }
 
     fn take(&mut self, frame: &Frame<'_>) -> io::Result<()> {
@@ -178,15 +184,10 @@ impl Clip {
             let [x, y, z] = vector.to_array().map(f32::to_le_bytes);
             self.data.write_all(&[x, y, z].concat())?;
         }
-        self.reserve.add(self.share(self.frames + 1) - self.share(self.frames))?;
+        self.reserve.grow_to(share(&self.document, self.frames + 1))?;
         self.data.commit()?;
         self.count_in(shape);
         Ok(())
-    }
-
-    /// What so many frames take besides their shapes, at most.
-    fn share(&self, frames: u64) -> u64 {
-        self.document.tail_bytes(frames) + self.document.text_bytes(frames)
     }
 
     /// Counts a shape that has been written.

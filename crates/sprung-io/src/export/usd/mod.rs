@@ -20,7 +20,7 @@ use self::layer::{Layer, Span};
 use self::package::Package;
 use self::scene::Scene;
 use self::text::Text;
-use super::{Estimate, Export, Exporter, Frame, Heeds, Mark, Options, Progress, RunInfo, Written};
+use super::{Estimate, Export, Exporter, Frame, Heeds, Mark, Options, Progress, RunInfo, Writes, Written};
 use crate::files::write_error;
 
 /// `.usdc`: USD in its binary form.
@@ -28,6 +28,7 @@ pub const USDC: Exporter = Exporter {
     ending: "usdc",
     description: "USD, binary: meshes, points and curves that move, for Blender, Houdini, Unreal, Maya",
     heeds: HEEDS,
+    writes: Writes::File,
     estimate: |run, options| Ok(Estimate::Exact(binary::bytes(&layer(run, options)?, None, run.frames))),
     open: |path, run, options| begin(path, run, options, None, Form::crate_file),
     resume: Some(|path, run, options, mark| begin(path, run, options, Some(mark), Form::crate_file)),
@@ -38,6 +39,7 @@ pub const USDA: Exporter = Exporter {
     ending: "usda",
     description: "USD as text: the same, to be read by people; several times as large",
     heeds: HEEDS,
+    writes: Writes::File,
     estimate: |run, options| Ok(Estimate::About(text::bytes(&layer(run, options)?, run.frames))),
     open: |path, run, options| begin(path, run, options, None, Form::text),
     resume: Some(|path, run, options, mark| begin(path, run, options, Some(mark), Form::text)),
@@ -48,6 +50,7 @@ pub const USDZ: Exporter = Exporter {
     ending: "usdz",
     description: "USD as a package, for phones and the web; at most 4 GiB",
     heeds: HEEDS,
+    writes: Writes::File,
     estimate: estimate_package,
     open: |path, run, options| begin(path, run, options, None, Form::package),
     resume: Some(|path, run, options, mark| begin(path, run, options, Some(mark), Form::package)),

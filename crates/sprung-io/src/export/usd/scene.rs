@@ -6,6 +6,7 @@ use sprung::{Result, Vec3};
 
 use super::layer::{Attribute, Layer, Prim, Value, identifier};
 use crate::export::colour::linear;
+use crate::export::faces::Face;
 use crate::export::geometry::{Part, SPRING_COLOUR, tube_radius};
 use crate::export::{Frame, Geometry, Options, RunInfo, Up};
 
@@ -150,11 +151,12 @@ impl Builder {
             attributes.push(Attribute::varying("primvars:point", "int[]", numbers).interpolated("vertex"));
         }
         if is_mesh {
-            let corners: Vec<i32> = part.triangles.as_flattened().iter().map(|&c| c.cast_signed()).collect();
+            let corners = part.faces().flat_map(Face::corners).map(u32::cast_signed).collect();
+            let counts = part.faces().map(|face| face.len() as i32).collect();
             let normals = self.column(Source::Normals(range.clone()), count);
             attributes.extend([
                 Attribute::varying("normals", "normal3f[]", normals).interpolated("vertex"),
-                Attribute::varying("faceVertexCounts", "int[]", Value::Ints(vec![3; part.triangles.len()])),
+                Attribute::varying("faceVertexCounts", "int[]", Value::Ints(counts)),
                 Attribute::varying("faceVertexIndices", "int[]", Value::Ints(corners)),
                 Attribute::uniform("orientation", "token", Value::Token("rightHanded")),
                 Attribute::uniform("subdivisionScheme", "token", Value::Token("none")),

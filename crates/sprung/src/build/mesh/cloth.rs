@@ -166,6 +166,7 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
             vertices,
             triangles: mesh.faces.triangles(),
             stands_for_body: true,
+            fans: mesh.faces.fans(),
         }),
         points,
         masses,

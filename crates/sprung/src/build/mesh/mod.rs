@@ -26,6 +26,9 @@ pub use weld::MERGE_SHARE;
 /// Vertices that a mesh may have, and likewise corners of faces, lines and tetrahedra.
 pub const MOST_VERTICES: usize = 50_000_000;
 
+/// Corners that a face may have to leave as one, in any format; faces of more leave as triangles.
+pub const MOST_CORNERS: usize = 255;
+
 /// Largest coordinate of a vertex, in the file's units; larger ones are refused.
 const LARGEST: f64 = 1e30;
 
@@ -98,6 +101,24 @@ impl Faces {
         let fans =
             self.iter().flat_map(|face| face.windows(2).skip(1).map(|side| [face[0], side[0], side[1]]));
         fans.collect()
+    }
+
+    /// How many of those triangles each face is; none at all if every face is a triangle. A face of more than
+    /// [`MOST_CORNERS`] corners counts as triangles.
+    pub fn fans(&self) -> Vec<u32> {
+        if self.iter().all(|face| face.len() <= 3) {
+            return Vec::new();
+        }
+        let fan = |face: &[u32]| {
+            let triangles = face.len().saturating_sub(2);
+            let is_whole = (3..=MOST_CORNERS).contains(&face.len());
+            if is_whole {
+                std::iter::repeat_n(triangles as u32, 1)
+            } else {
+                std::iter::repeat_n(1, triangles)
+            }
+        };
+        self.iter().flat_map(fan).collect()
     }
 
     /// The sides of each face in turn; a side that two faces share comes twice.
@@ -198,6 +219,8 @@ pub struct MeshSurface {
     pub triangles: Vec<[u32; 3]>,
     /// Whether it is what is meant to be seen of the body; of a net that is its springs.
     pub stands_for_body: bool,
+    /// How many of them each face of the mesh is, as in [`Faces::fans`].
+    pub fans: Vec<u32>,
 }
 
 /// `12 vertices`, `1 vertex`.

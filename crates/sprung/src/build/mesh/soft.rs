@@ -48,7 +48,7 @@ pub(crate) fn soft_body_within(mesh: &Mesh, material: &SoftMaterial, most_spring
     let mut warnings = mesh.warnings.clone();
     warnings.extend(welded.warning);
     let points = welded.points;
-    let mut surface = mesh.faces.triangles();
+    let (mut surface, fans) = (mesh.faces.triangles(), mesh.faces.fans());
     let at_points = |corners: &[u32; 3]| corners.map(|vertex| welded.point_of[vertex as usize]);
     let triangles: Vec<[u32; 3]> =
         surface.iter().map(at_points).filter(|[a, b, c]| a != b && b != c && c != a).collect();
@@ -83,6 +83,9 @@ pub(crate) fn soft_body_within(mesh: &Mesh, material: &SoftMaterial, most_spring
     if rule == Rule::Winding && signed < 0.0 {
         warnings.push("its faces are turned inwards, and were turned around".to_owned());
         surface.iter_mut().for_each(|corners| corners.swap(1, 2));
+        // The triangles of a face turned around are a fan from the other end.
+        let mut rest = &mut surface[..];
+        fans.iter().filter_map(|&fan| rest.split_off_mut(..fan as usize)).for_each(<[_]>::reverse);
     }
 
     let filling = Filling::new(cells, shares, on_surface(), most_springs)?;
@@ -105,6 +108,7 @@ pub(crate) fn soft_body_within(mesh: &Mesh, material: &SoftMaterial, most_spring
             vertices: Some(vertices),
             triangles: surface,
             stands_for_body: true,
+            fans,
         }),
         point_of_vertex,
         points: filling.points,
