@@ -213,6 +213,8 @@ impl eframe::App for App {
         actions.extend(action::pressed(ui.ctx()));
         actions.into_iter().for_each(|action| self.act(ui.ctx(), action));
         self.name_window(ui.ctx());
+        #[cfg(target_arch = "wasm32")]
+        crate::files::hand_out();
         if self.state.report.playing {
             ui.ctx().request_repaint();
         }

@@ -1,11 +1,13 @@
 //! The one door to files: dialogs, reading, writing.
 
-use std::future::Future;
+#[cfg(target_arch = "wasm32")]
+mod page;
+#[cfg(not(target_arch = "wasm32"))]
+mod system;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::pin::Pin;
 use std::sync::Arc;
-use std::task::{Context, Poll, Wake, Waker};
 
 use serde::{Deserialize, Serialize};
 use sprung::scene::{BUILTIN, MAX_BYTES, Scene};
@@ -15,6 +17,11 @@ use sprung_io::checkpoint::{self, Keeper, Resumed, Saved, Stored};
 use sprung_io::files::PartialFile;
 
 use crate::media::file_stem;
+
+#[cfg(target_arch = "wasm32")]
+pub use page::{Dialog, dropped, hand_out};
+#[cfg(not(target_arch = "wasm32"))]
+pub use system::{Dialog, dropped};
 
 /// The ending of scene files.
 pub const ENDING: &str = "toml";
@@ -251,72 +258,6 @@ pub struct Wanted<'a> {
     pub endings: &'a [&'a str],
     /// The name for a file to save; `None`: a file to open.
     pub save_as: Option<&'a str>,
-}
-
-/// A dialog of the system that is open. It never holds the window up: ask it each frame.
-///
-/// Where the system has none, it says at once that nothing was chosen; so paths can always be typed as well.
-pub struct Dialog(Pin<Box<dyn Future<Output = Option<PathBuf>>>>);
-
-impl Dialog {
-    /// Opens one.
-    pub fn open(wanted: &Wanted<'_>) -> Self {
-        let dialog =
-            rfd::AsyncFileDialog::new().set_title(wanted.title).add_filter(wanted.kind, wanted.endings);
-        let Some(name) = wanted.save_as else {
-            let picked = dialog.pick_file();
-            return Self(Box::pin(async { picked.await.map(|file| file.path().to_owned()) }));
-        };
-        let picked = dialog.set_file_name(name).save_file();
-        Self(Box::pin(async { picked.await.map(|file| file.path().to_owned()) }))
-    }
-
-    /// What has been chosen: `None` as long as it is open, `Some(None)` if it was closed without.
-    pub fn poll(&mut self, context: &egui::Context) -> Option<Option<PathBuf>> {
-        let waker = Waker::from(Arc::new(Repaint(context.clone())));
-        match self.0.as_mut().poll(&mut Context::from_waker(&waker)) {
-            Poll::Ready(chosen) => Some(chosen),
-            Poll::Pending => None,
-        }
-    }
-}
-
-/// Wakes the window when the dialog has something to say.
-struct Repaint(egui::Context);
-
-impl Wake for Repaint {
-    fn wake(self: Arc<Self>) {
-        self.0.request_repaint();
-    }
-}
-
-/// The scene or checkpoint in the first of the files that were dropped onto the window, if any were.
-pub fn dropped(context: &egui::Context) -> Option<Result<(Found, Origin), Refused>> {
-    let file = context.input(|input| input.raw.dropped_files.first().cloned())?;
-    let path = file.path().to_owned();
-    let name = path.display().to_string();
-    // On the desktop a dropped file has a path, and so a limit to what is read of it; else it comes as bytes.
-    if path.is_absolute() {
-        return Some(find(&path).map(|found| (found, Origin::File(path))));
-    }
-    let found = match file.bytes() {
-        Ok(bytes) if checkpoint::is_name(&path) => {
-            let file = name.clone();
-            let read = move || Saved::read_from(&mut &bytes[..], bytes.len() as u64);
-            let bring = Arc::new(move |options: &Options| running(read(), &file, options));
-            Ok(Found::Checkpoint(Kept { name: name.clone(), bring }))
-        }
-        Ok(bytes) => parse_scene(&bytes, &name).map(Found::Scene),
-        Err(reason) => {
-            let error = Error::new(Code::Unreadable, format!("cannot be read: {reason}"));
-            Err(Refused { error: error.in_file(name), text: None })
-        }
-    };
-    Some(found.map(|found| {
-        let (Found::Scene(Source { name, .. }) | Found::Checkpoint(Kept { name, .. })) = &found;
-        let origin = Origin::Other(name.clone());
-        (found, origin)
-    }))
 }
 
 #[cfg(test)]

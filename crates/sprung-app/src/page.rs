@@ -1,5 +1,6 @@
 //! What the page does for the app: `web.js`.
 
+use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen(module = "/src/web.js")]
@@ -10,6 +11,8 @@ extern "C" {
     pub fn address() -> String;
     /// Hands a file to the person.
     pub fn download(name: &str, bytes: &[u8]);
+    /// Asks for files; `take(names, bytes of each)` is called when they are read.
+    pub fn pick(accept: &str, take: &JsValue);
     /// The first picture is drawn.
     pub fn ready();
     /// The app cannot go on.

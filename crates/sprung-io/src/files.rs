@@ -1,14 +1,25 @@
 //! The one place that knows paths: outputs grow beside their place and are renamed when whole.
 
+#[cfg(any(test, target_arch = "wasm32"))]
+#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "its tests run on every system"))]
+pub mod memory;
 mod resume;
+#[cfg(not(target_arch = "wasm32"))]
+mod system;
 
-use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use same_file::Handle;
 use sprung::{Code, Error, Result};
 
+// Where files are: on the disks of a system, or, on a page, which has none, in its memory.
+#[cfg(target_arch = "wasm32")]
+use memory as disk;
+#[cfg(not(target_arch = "wasm32"))]
+use system as disk;
+
+pub use disk::{File, disk_of, place_of, remove_beside, room_beside};
+use disk::{open_locked, target_of};
 pub use resume::{has_no_partial, is_complete, remove_spools};
 
 /// Bytes gathered before they are handed to the system.
@@ -202,8 +213,7 @@ impl PartialFile {
         let file = self.writer().get_ref();
         file.sync_all()?;
         // Renamed while still locked: nobody can take the partial file for an abandoned one in between.
-        std::fs::rename(&self.partial, &self.target)?;
-        sync_folder_of(&self.target);
+        disk::rename(&self.partial, &self.target)?;
         let writer = self.writer.take().ok_or(io::ErrorKind::NotFound)?;
         Ok(writer.into_parts().0)
     }
@@ -226,7 +236,7 @@ impl Drop for PartialFile {
             // Not flushed: what is buffered is of no use any more. Removed before the lock is let go.
             let (file, _) = writer.into_parts();
             if self.fate == Fate::Removed {
-                let _ = std::fs::remove_file(&self.partial);
+                let _ = disk::remove(&self.partial);
             }
             drop(file);
         }
@@ -246,31 +256,6 @@ impl Write for PartialFile {
 impl Seek for PartialFile {
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         self.writer().seek(position)
-    }
-}
-
-/// Where a file of this name goes: behind a symbolic link, to the file that it leads to, so that the link stays a link.
-/// Renaming would put a file in the place of anything else, and be the end of a pipe or a device.
-fn target_of(path: &Path) -> Result<PathBuf> {
-    if path.is_dir() {
-        return Err(unwritable(path, "cannot be written: it is a folder").with_fix("give a file's name"));
-    }
-    if path.file_name().is_none() {
-        return Err(unwritable(path, "cannot be written: it is not a file's name"));
-    }
-    let refused =
-        |why: &str| Err(unwritable(path, format!("cannot be written: {why}")).with_fix("give another name"));
-    let found = match path.symlink_metadata() {
-        Ok(found) => found,
-        // A missing folder is found out when the file is opened.
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(path.to_owned()),
-        Err(error) => return Err(write_error(path, &error)),
-    };
-    let target = if found.is_symlink() { path.canonicalize().ok() } else { Some(path.to_owned()) };
-    match target {
-        None => refused("it is a link that leads to no file"),
-        Some(target) if target.is_file() => Ok(target),
-        Some(_) => refused("it is not a regular file"),
     }
 }
 
@@ -304,11 +289,6 @@ fn not_begun(path: &Path, partial: &Path, error: &io::Error) -> Error {
     }
 }
 
-/// Makes a file's new name last through a loss of power, where the system can.
-fn sync_folder_of(path: &Path) {
-    let _ = File::open(folder_of(path)).and_then(|folder| folder.sync_all());
-}
-
 /// What a file is opened for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Opening {
@@ -320,85 +300,13 @@ enum Opening {
     ToRead,
 }
 
-/// Opens or creates a file, locked. `WouldBlock` if somebody else holds the lock, `AlreadyExists` if what has the name is
-/// no regular file: opening a pipe would wait for its reader, and a link leads to a file that is not ours.
-fn open_locked(path: &Path, opening: Opening) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    options.read(true).write(opening != Opening::ToRead);
-    loop {
-        let opened = match path.symlink_metadata() {
-            // Not truncated before it is ours: it may be another run's.
-            Ok(found) if found.is_file() => options.open(path),
-            Ok(_) => return Err(io::ErrorKind::AlreadyExists.into()),
-            Err(error) if opening != Opening::Anew => return Err(error),
-            Err(_) => options.clone().create_new(true).open(path),
-        };
-        let file = match opened {
-            Ok(file) => file,
-            // Another run created or completed it since we looked: look again.
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
-            Err(error) if error.kind() == io::ErrorKind::NotFound && path.symlink_metadata().is_ok() => {
-                continue;
-            }
-            Err(error) => return Err(error),
-        };
-        lock(&file)?;
-        // Another run may have completed and renamed the file between our opening and our lock. Then what we hold is
-        // its finished output, and the partial name is free: try again.
-        let still_named = match Handle::from_path(path) {
-            Ok(named) => named == Handle::from_file(file.try_clone()?)?,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => false,
-            Err(error) => return Err(error),
-        };
-        if still_named {
-            if opening == Opening::Anew {
-                file.set_len(0)?;
-            }
-            return Ok(file);
-        }
-    }
-}
-
-/// Locks a file. `WouldBlock` if somebody else has.
-fn lock(file: &File) -> io::Result<()> {
-    match file.try_lock() {
-        Ok(()) => Ok(()),
-        Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
-        // Some network file systems know no locks; there, the last writer wins.
-        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
-        Err(TryLockError::Error(error)) => Err(error),
-    }
-}
-
 /// Looks whether a file of this name can be begun, as far as that can be told without beginning it.
 ///
 /// # Errors
 /// As [`PartialFile::create`].
 pub fn check(path: &Path) -> Result<()> {
     let target = target_of(path)?;
-    match std::fs::metadata(folder_of(&target)) {
-        Ok(folder) if folder.is_dir() => Ok(()),
-        Ok(_) => Err(write_error(path, &io::ErrorKind::NotADirectory.into())),
-        Err(error) => Err(write_error(path, &error)),
-    }
-}
-
-/// Room that is left on the disk of an output, bytes, where the system tells.
-pub fn room_beside(path: &Path) -> Option<u64> {
-    fs4::available_space(folder_of(&place_of(path))).ok()
-}
-
-/// A name of the disk that an output lies on, the same for all of one disk.
-pub fn disk_of(path: &Path) -> Option<String> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        Some(std::fs::metadata(folder_of(&place_of(path))).ok()?.dev().to_string())
-    }
-    #[cfg(not(unix))]
-    {
-        Some(place_of(path).components().next()?.as_os_str().to_string_lossy().into_owned())
-    }
+    disk::check_folder(folder_of(&target)).map_err(|error| write_error(path, &error))
 }
 
 /// A folder for files of ours, made if it was not there. When it is dropped, one that was made and is still empty is removed.
@@ -414,9 +322,8 @@ impl Folder {
     /// # Errors
     /// [`Code::Unwritable`], naming it.
     pub fn make(path: &Path) -> Result<Self> {
-        match std::fs::create_dir(path) {
-            Ok(()) => Ok(Self { path: path.to_owned(), is_new: true }),
-            Err(_) if path.is_dir() => Ok(Self { path: path.to_owned(), is_new: false }),
+        match disk::make_folder(path) {
+            Ok(is_new) => Ok(Self { path: path.to_owned(), is_new }),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 let sentence = "is to be a folder for the frames, and there is something else of this name";
                 Err(unwritable(path, sentence).with_fix("give the output another name"))
@@ -435,32 +342,9 @@ impl Drop for Folder {
     fn drop(&mut self) {
         if self.is_new {
             // Fails if there is anything in it, and so it should.
-            let _ = std::fs::remove_dir(&self.path);
+            let _ = disk::remove_folder(&self.path);
         }
     }
-}
-
-/// Removes the regular files in the folder of `path` whose names `is_meant` says `Some(true)` to.
-///
-/// # Errors
-/// If the folder cannot be read, or such a file cannot be removed.
-pub fn remove_beside(path: &Path, is_meant: impl Fn(&str) -> Option<bool>) -> io::Result<()> {
-    for entry in std::fs::read_dir(folder_of(path))? {
-        let entry = entry?;
-        let is_named_so = entry.file_name().to_str().and_then(&is_meant) == Some(true);
-        if is_named_so && entry.file_type()?.is_file() {
-            std::fs::remove_file(entry.path())?;
-        }
-    }
-    Ok(())
-}
-
-/// Where a path leads, the same for all its spellings, and whether there is anything yet or not.
-pub fn place_of(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| match path.file_name() {
-        Some(name) => place_of(folder_of(path)).join(name),
-        None => path.to_owned(),
-    })
 }
 
 /// The folder that a file of this name lies in.
@@ -475,7 +359,7 @@ pub fn folder_of(path: &Path) -> &Path {
 /// [`Code::Unwritable`], naming `path`.
 pub fn spool_beside(path: &Path) -> Result<File> {
     // Where the output is a link, its disk is that of the file it leads to.
-    tempfile::tempfile_in(folder_of(&place_of(path))).map_err(|error| write_error(path, &error))
+    disk::temporary(Some(folder_of(&place_of(path)))).map_err(|error| write_error(path, &error))
 }
 
 /// A temporary file without a name, in the system's folder for such: for what waits before anybody has said where it is
@@ -484,7 +368,7 @@ pub fn spool_beside(path: &Path) -> Result<File> {
 /// # Errors
 /// Those of the system.
 pub fn spool() -> io::Result<File> {
-    tempfile::tempfile()
+    disk::temporary(None)
 }
 
 /// Reads a file of at most `most` bytes; a larger one is refused unread.
@@ -493,10 +377,7 @@ pub fn spool() -> io::Result<File> {
 /// [`Code::Unreadable`] or [`Code::TooLarge`], naming the file.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
     let failed = |error: io::Error| read_error(path, &error);
-    let file = File::open(path).map_err(failed)?;
-    if file.metadata().map_err(failed)?.is_dir() {
-        return Err(failed(io::ErrorKind::IsADirectory.into()));
-    }
+    let file = disk::open(path).map_err(failed)?;
     // One byte beyond the limit tells that there is more, also where no length is known beforehand, as of a pipe.
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
@@ -522,17 +403,11 @@ pub fn read_ordinary(path: &Path, most: u64) -> Result<Vec<u8>> {
 /// [`Code::Unreadable`], naming the file.
 pub fn open_ordinary(path: &Path) -> Result<File> {
     check_ordinary(path)?;
-    let file = File::open(path).map_err(|error| read_error(path, &error))?;
-    match file.metadata() {
-        Ok(found) if found.is_dir() => Err(read_error(path, &io::ErrorKind::IsADirectory.into())),
-        Ok(_) => Ok(file),
-        Err(error) => Err(read_error(path, &error)),
-    }
+    disk::open(path).map_err(|error| read_error(path, &error))
 }
 
 fn check_ordinary(path: &Path) -> Result<()> {
-    let is_odd = std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir());
-    if is_odd {
+    if disk::is_odd(path) {
         let error = Error::new(Code::Unreadable, "is a pipe or a device, and must be an ordinary file");
         return Err(error.in_file(path.display().to_string()));
     }

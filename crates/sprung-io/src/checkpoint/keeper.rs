@@ -1,13 +1,12 @@
 //! Checkpoint files: one run at a time may have one, and what replaces an earlier one is whole.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use sprung::{Code, Error, Result};
 
 use super::Saved;
-use crate::files::{self, PartialFile, write_error};
+use crate::files::{self, File, PartialFile, write_error};
 
 /// A checkpoint file that was opened, and not read yet: how large it is can be asked before memory is taken for it.
 #[derive(Debug)]

@@ -1,13 +1,12 @@
 //! What has to wait in a temporary file until the run is over.
 
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use sprung::Result;
 
 use super::Progress;
-use crate::files::{PartialFile, spool_beside};
+use crate::files::{File, PartialFile, spool_beside};
 
 /// Bytes that are written or moved at once, at most.
 pub const PIECE_BYTES: usize = 1 << 15;

@@ -7,7 +7,6 @@
 //!
 //! The collection grows with each whole frame. What ends it needs room too, which is set aside at the start.
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -18,7 +17,7 @@ use super::{
     Estimate, Export, Exporter, Frame, Geometry, Heeds, Mark, Options, Progress, RunInfo, Springs, Writes,
     Written,
 };
-use crate::files::{Folder, PartialFile, spool_beside, write_error};
+use crate::files::{File, Folder, PartialFile, spool_beside, write_error};
 use crate::pack::{Pack, Unpack};
 
 /// `.pvd`: for ParaView and everything else that is built on VTK.

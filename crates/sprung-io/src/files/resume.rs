@@ -7,7 +7,7 @@ use std::time::SystemTime;
 use crc32fast::Hasher;
 use sprung::{Code, Error, Result};
 
-use super::{Fate, Opening, PartialFile, open_locked, partial_of, target_of, write_error};
+use super::{Fate, Opening, PartialFile, disk, open_locked, partial_of, target_of, write_error};
 use crate::export::{FileMark, Mark};
 
 /// Bytes that are read at once.
@@ -129,7 +129,7 @@ pub fn remove_spools(path: &Path, mark: &Mark) {
         let Ok(partial) = partial_of(path, &target, &file.part) else { continue };
         // One that is locked is another run's.
         if open_locked(&partial, Opening::AsItIs).is_ok() {
-            let _ = std::fs::remove_file(&partial);
+            let _ = disk::remove(&partial);
         }
     }
 }

@@ -4,12 +4,11 @@
 //! a temporary file without a name, and memory holds no more than where each of them begins. Writing goes on in small
 //! pieces, between which a window can be drawn.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use sprung::{Code, Error, Result};
-use sprung_io::files::write_error;
+use sprung_io::files::{File, write_error};
 use sprung_io::{PartialFile, Written};
 
 use super::gif::{GifWriter, lessons, schedule};
