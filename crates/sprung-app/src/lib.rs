@@ -11,6 +11,7 @@ mod card;
 pub mod explain;
 pub mod files;
 mod icon;
+pub mod link;
 mod media;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;

@@ -31,6 +31,15 @@ pub struct Turntable {
 }
 
 impl Turntable {
+    /// Whether it is a place that one can look from.
+    pub fn is_sane(&self) -> bool {
+        let Self { target, distance, azimuth, elevation } = *self;
+        target.is_finite()
+            && (DISTANCE_RANGE.0..=DISTANCE_RANGE.1).contains(&distance)
+            && azimuth.is_finite()
+            && elevation.abs() <= STEEPEST
+    }
+
     /// The tightest view of a box of the world in a picture of this shape (width over height), flat boxes nearly from
     /// the front.
     pub fn framing(bounds: &Bounds, aspect: f32) -> Self {

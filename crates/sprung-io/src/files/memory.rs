@@ -24,6 +24,11 @@ struct Files {
 static FILES: Mutex<Files> =
     Mutex::new(Files { named: BTreeMap::new(), written: Vec::new() });
 
+/// The name that a file has here: without the folders of its path.
+fn name(path: &Path) -> PathBuf {
+    path.file_name().map_or_else(|| path.to_owned(), PathBuf::from)
+}
+
 /// A lock whose holder panicked still holds a whole value.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -31,7 +36,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// Puts a file there, in place of one of the same name.
 pub fn put(path: &Path, bytes: Vec<u8>) {
-    lock(&FILES).named.insert(path.to_owned(), Arc::new(Mutex::new(bytes)));
+    lock(&FILES).named.insert(name(path), Arc::new(Mutex::new(bytes)));
 }
 
 /// Takes the files that got their names since this was asked last, with what they hold.
@@ -185,15 +190,15 @@ pub(super) fn target_of(path: &Path) -> Result<PathBuf> {
 /// Gives a file another name, which it is taken by.
 pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     let mut files = lock(&FILES);
-    let content = files.named.remove(from).ok_or(io::ErrorKind::NotFound)?;
-    files.named.insert(to.to_owned(), content);
-    files.written.push(to.to_owned());
+    let content = files.named.remove(&name(from)).ok_or(io::ErrorKind::NotFound)?;
+    files.named.insert(name(to), content);
+    files.written.push(name(to));
     Ok(())
 }
 
 /// Removes a file.
 pub fn remove(path: &Path) -> io::Result<()> {
-    lock(&FILES).named.remove(path).map(|_| ()).ok_or_else(|| io::ErrorKind::NotFound.into())
+    lock(&FILES).named.remove(&name(path)).map(|_| ()).ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
 /// Opens a file. Nobody else is there who could have it: there are no locks.
@@ -202,7 +207,7 @@ pub(super) fn open_locked(path: &Path, opening: Opening) -> io::Result<File> {
         return open(path);
     }
     let content = Content::default();
-    lock(&FILES).named.insert(path.to_owned(), content.clone());
+    lock(&FILES).named.insert(name(path), content.clone());
     Ok(File::new(content))
 }
 
@@ -235,9 +240,8 @@ pub fn remove_folder(_: &Path) -> io::Result<()> {
 ///
 /// # Errors
 /// None.
-pub fn remove_beside(path: &Path, is_meant: impl Fn(&str) -> Option<bool>) -> io::Result<()> {
-    let name = |other: &Path| other.file_name().and_then(|name| name.to_str()).and_then(&is_meant);
-    lock(&FILES).named.retain(|other, _| other.parent() != path.parent() || name(other) != Some(true));
+pub fn remove_beside(_: &Path, is_meant: impl Fn(&str) -> Option<bool>) -> io::Result<()> {
+    lock(&FILES).named.retain(|name, _| name.to_str().and_then(&is_meant) != Some(true));
     Ok(())
 }
 
@@ -253,7 +257,7 @@ pub fn temporary(_: Option<&Path>) -> io::Result<File> {
 
 /// Opens a file to read it.
 pub fn open(path: &Path) -> io::Result<File> {
-    let content = lock(&FILES).named.get(path).cloned();
+    let content = lock(&FILES).named.get(&name(path)).cloned();
     content.map(File::new).ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
@@ -268,7 +272,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_there_once_it_has_its_name() {
-        let (partial, path) = (Path::new("a/b.csv.partial"), Path::new("a/b.csv"));
+        let (partial, path) = (Path::new("b.csv.partial"), Path::new("b.csv"));
         let mut file = open_locked(partial, Opening::Anew).expect("there is room");
         file.write_all(b"some words").expect("there is room");
         file.seek(SeekFrom::Start(5)).expect("it is within");
@@ -278,7 +282,7 @@ mod tests {
         assert!(open(path).is_err() && take_written().iter().all(|(written, _)| written != path));
         rename(partial, path).expect("it is there");
         let mut text = String::new();
-        open(path).and_then(|mut file| file.read_to_string(&mut text)).expect("it is text");
+        open(Path::new("./any/b.csv")).and_then(|mut file| file.read_to_string(&mut text)).expect("it is text");
         assert_eq!(text, "some more");
         let written: Vec<_> = take_written().into_iter().filter(|(written, _)| written == path).collect();
         assert_eq!(written, [(path.to_owned(), b"some more".to_vec())]);
