@@ -47,4 +47,7 @@ async function start() {
   }
 }
 
+// Another link was put into the address: it is opened as in a new page.
+addEventListener("hashchange", () => location.reload());
+
 start().catch((error) => fail(`sprung cannot be loaded: ${error.message}`, error));

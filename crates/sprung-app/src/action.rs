@@ -55,7 +55,11 @@ pub enum Action {
     Picture,
     /// Begins or ends an animation.
     Record,
+    /// Copies a link to the scene as it is.
+    #[cfg(target_arch = "wasm32")]
+    Link,
     /// Closes the window.
+    #[cfg(not(target_arch = "wasm32"))]
     Quit,
     /// Opens one of the four scenes of the report, by its number from zero.
     Scene(usize),
@@ -212,6 +216,15 @@ pub static ACTIONS: &[ActionInfo] = &[
     ),
     action!(Action::Picture, [command(Key::P)], icon::CAMERA, "Picture…", "Saves what is seen as a picture."),
     action!(Action::Record, [command(Key::R)], icon::FILM, "Film…", "Begins or ends a film of what is seen."),
+    #[cfg(target_arch = "wasm32")]
+    action!(
+        Action::Link,
+        [command(Key::L)],
+        icon::LINK,
+        "Copy link",
+        "Copies a link that opens this scene, with all that was changed, as it is seen now."
+    ),
+    #[cfg(not(target_arch = "wasm32"))]
     action!(Action::Quit, [command(Key::Q)], icon::CLOSE, "Quit", "Closes the window."),
     action!(Action::Scene(0), [key(Key::Num1)], icon::LAMP, "spring", "Opens the mass on a spring."),
     action!(Action::Scene(1), [key(Key::Num2)], icon::LAMP, "chain", "Opens the chain pendulum."),

@@ -8,6 +8,8 @@ use sprung_render::turntable::Turntable;
 
 use crate::action::{self, Action};
 use crate::files::{Files, Origin};
+#[cfg(target_arch = "wasm32")]
+use crate::link;
 use crate::settings::Settings;
 use crate::state::{AppState, Tool};
 use crate::view::View;
@@ -30,10 +32,15 @@ pub struct App {
     cards: card::Cards,
     /// The scene that the camera was set up for.
     serial: Option<u64>,
+    /// From where the first scene is to be seen.
+    first_view: Option<Turntable>,
     /// How much larger everything is, to be kept.
     zoom: f32,
     /// What the window is called now.
     title: String,
+    /// The parameters that the kept link was made of.
+    #[cfg(target_arch = "wasm32")]
+    linked: Option<std::sync::Arc<sprung::Params>>,
 }
 
 impl App {
@@ -65,6 +72,7 @@ impl App {
             explain_at: None,
             actions: Vec::new(),
             files: Files::new(origin),
+            kept_link: None,
             refused: Default::default(),
             notice: None,
             hint: !settings.hint_taken,
@@ -79,9 +87,17 @@ impl App {
             explain: Default::default(),
             cards: Default::default(),
             serial: None,
+            first_view: None,
             zoom: settings.zoom(),
             title: String::new(),
+            #[cfg(target_arch = "wasm32")]
+            linked: None,
         }
+    }
+
+    /// The scene that is open first is seen from there.
+    pub fn look_from(&mut self, view: Turntable) {
+        self.first_view = Some(view);
     }
 
     /// What the parts of the window share.
@@ -148,11 +164,31 @@ impl App {
             }
             Action::Open | Action::Save | Action::Checkpoint => self.cards.file(action, state),
             Action::Picture | Action::Record => self.view.save(action, state),
+            #[cfg(target_arch = "wasm32")]
+            Action::Link => match link::link(&state.report, &state.camera) {
+                Ok(link) => {
+                    context.copy_text(format!("{}#{link}", crate::page::address()));
+                    state.say("Copied a link to this scene");
+                }
+                Err(error) => state.refuse(error),
+            },
+            #[cfg(not(target_arch = "wasm32"))]
             Action::Quit => context.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Scene(number) => {
                 let name = panel::scenes::of_kind(Kind::Report).nth(number).map(|entry| entry.name);
                 name.into_iter().for_each(|name| state.open_builtin(name));
             }
+        }
+    }
+
+    /// Makes the link for the next start anew, where anything was changed since the last.
+    #[cfg(target_arch = "wasm32")]
+    fn keep_link(&mut self) {
+        let (state, params) = (&mut self.state, self.state.report.params.clone());
+        if self.linked.as_ref().is_none_or(|linked| !std::sync::Arc::ptr_eq(linked, &params)) {
+            // What no link can hold is not kept.
+            state.kept_link = link::link(&state.report, &state.camera).ok();
+            self.linked = Some(params);
         }
     }
 
@@ -173,7 +209,10 @@ impl App {
         self.state.hovered = None;
         self.state.explain_stage = None;
         self.state.pointed_out.clear();
-        self.view.frame_scene(&mut self.state);
+        match self.first_view.take() {
+            Some(view) => self.state.camera = view,
+            None => self.view.frame_scene(&mut self.state),
+        }
     }
 
     /// Calls the window by what it shows, so that it can be told in a list of windows, or by one who does not see it.
@@ -225,6 +264,8 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        #[cfg(target_arch = "wasm32")]
+        self.keep_link();
         Settings::of(&self.state, self.zoom).save(storage);
     }
 }

@@ -58,7 +58,9 @@ pub enum Origin {
     Builtin(String),
     /// A file.
     File(PathBuf),
-    /// Neither: handed in by the caller, or dropped where files have no path.
+    /// A link that holds it: see [`link`](crate::link).
+    Link(String),
+    /// None of these: handed in by the caller, or dropped where files have no path.
     Other(String),
 }
 
@@ -85,6 +87,10 @@ impl Origin {
                 Ok(Found::Scene(Source { name: name.clone(), scene: Scene::builtin(name)? }))
             }
             Self::File(path) => find(path).map_err(|refused| refused.error),
+            Self::Link(link) => match crate::link::read(link)? {
+                Some(link) => Ok(Found::Scene(link.source)),
+                None => Err(Error::new(Code::MissingField, "the link is empty")),
+            },
         }
     }
 }
@@ -124,6 +130,7 @@ impl Files {
             Origin::Builtin(name) | Origin::Other(name) => {
                 PathBuf::from(format!("my-{}.{ENDING}", file_stem(name)))
             }
+            Origin::Link(_) => PathBuf::from(format!("my-scene.{ENDING}")),
         }
     }
 }

@@ -79,6 +79,8 @@ impl Settings {
     /// Those of the moment.
     pub fn of(state: &AppState, zoom: f32) -> Self {
         let scene = match &state.files.origin {
+            // What a page opened or saved is gone with it; but a link holds the scene itself, with what was changed.
+            _ if cfg!(target_arch = "wasm32") => state.kept_link.clone().map(Origin::Link),
             // There is no way back to what has neither name nor path.
             Origin::Other(_) => None,
             origin => Some(origin.clone()),

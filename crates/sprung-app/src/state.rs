@@ -106,6 +106,8 @@ pub struct AppState {
     pub actions: Vec<Action>,
     /// Where the scene came from.
     pub files: Files,
+    /// On a page: a link to what is open, for the next start.
+    pub kept_link: Option<String>,
     /// What this window could not do, one after the other, until each is read. The driver has its own in the report.
     pub refused: VecDeque<Refused>,
     /// A word that is shown for a moment, such as "saved chain.toml".

@@ -9,6 +9,7 @@ use sprung_driver::{Driver, Handle, Options};
 
 use crate::app::App;
 use crate::beginning::first;
+use crate::link::{self, Link};
 use crate::page;
 use crate::settings::Settings;
 
@@ -54,14 +55,36 @@ fn create(context: &eframe::CreationContext<'_>) -> Result<App> {
     }
     let options =
         Options { history_bytes: HISTORY_BYTES, memory_limit: Some(MEMORY_LIMIT), ..Default::default() };
+    let (linked, bad_link) = match link::read(&page::fragment()) {
+        Ok(linked) => (linked, None),
+        Err(error) => (None, Some(error)),
+    };
     let settings = Settings::load(context.storage);
-    let (beginning, origin, refused) = first(None, None, &settings, &options)?;
+    let (beginning, origin, refused, view) = match linked {
+        Some(Link { source, origin, view, other_version }) => {
+            (source.into(), origin, other_version.as_deref().map(from_another), view)
+        }
+        None => {
+            let (beginning, origin, refused) = first(None, None, &settings, &options)?;
+            (beginning, origin, refused, None)
+        }
+    };
     let mut app = App::new(Handle::page(Driver::with(beginning, options)?), context);
-    app.state_mut().files.origin = origin;
-    if let Some(error) = refused {
-        app.state_mut().refuse(error);
+    if let Some(view) = view {
+        app.look_from(view);
     }
+    app.state_mut().files.origin = origin;
+    bad_link.into_iter().chain(refused).for_each(|error| app.state_mut().refuse(error));
     Ok(app)
+}
+
+/// The word on a link that another version made.
+fn from_another(version: &str) -> Error {
+    let sentence = format!(
+        "was made by version {version} of sprung, and this is {}: the motion may differ in its last digits",
+        link::VERSION
+    );
+    Error::new(Code::Conflict, sentence).in_file("the link")
 }
 
 /// What a browser gives as a reason.

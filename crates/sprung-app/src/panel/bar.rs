@@ -24,6 +24,8 @@ pub fn bar(ui: &mut Ui, state: &mut AppState) {
         for action in [Action::ResetView, Action::Picture, Action::Record] {
             action_icon(ui, state, action);
         }
+        #[cfg(target_arch = "wasm32")]
+        action_icon(ui, state, Action::Link);
         ui.separator();
         action_toggle(ui, state, Action::Panel, shown.controls);
         action_toggle(ui, state, Action::Plots, shown.plots);
