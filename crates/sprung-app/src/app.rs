@@ -21,6 +21,9 @@ const PANEL_WIDTH: f32 = 360.0;
 /// Width that its rows need, points.
 const LEAST_PANEL_WIDTH: f32 = 336.0;
 
+/// A window that is narrower has no room for the panel beside the scene, points: a phone that is held upright.
+const NARROW: f32 = 600.0;
+
 /// The window.
 pub struct App {
     state: AppState,
@@ -32,6 +35,8 @@ pub struct App {
     cards: card::Cards,
     /// The scene that the camera was set up for.
     serial: Option<u64>,
+    /// There is no room for the panel beside the scene.
+    is_narrow: bool,
     /// From where the first scene is to be seen.
     first_view: Option<Turntable>,
     /// How much larger everything is, to be kept.
@@ -87,6 +92,7 @@ impl App {
             explain: Default::default(),
             cards: Default::default(),
             serial: None,
+            is_narrow: false,
             first_view: None,
             zoom: settings.zoom(),
             title: String::new(),
@@ -111,12 +117,23 @@ impl App {
     }
 
     fn show(&mut self, ui: &mut egui::Ui) {
+        let is_narrow = ui.available_width() < NARROW;
+        if is_narrow && !self.is_narrow {
+            // The scene first: the panel folds away until it is asked for.
+            self.state.shown.controls = false;
+        }
+        self.is_narrow = is_narrow;
         let state = &mut self.state;
         theme::apply(ui.ctx(), state.appearance.theme);
         if !state.shown.presentation {
             egui::Panel::top("bar").show(ui, |ui| panel::bar(ui, state));
             egui::Panel::bottom("timeline").show(ui, |ui| self.timeline.show(ui, state));
-            if state.shown.controls {
+            if state.shown.controls && self.is_narrow {
+                // Below the scene, as wide as the screen: there is no room beside it.
+                let most = 0.5 * ui.available_height();
+                let panel = egui::Panel::bottom("controls below").exact_size(most);
+                panel.show(ui, |ui| self.controls.show(ui, state));
+            } else if state.shown.controls {
                 // The scene keeps at least two fifths of the window.
                 let most = 0.6 * ui.available_width();
                 let panel = egui::Panel::left("controls").default_size(PANEL_WIDTH.min(most));
@@ -184,7 +201,8 @@ impl App {
     /// Makes the link for the next start anew, where anything was changed since the last.
     #[cfg(target_arch = "wasm32")]
     fn keep_link(&mut self) {
-        let (state, params) = (&mut self.state, self.state.report.params.clone());
+        let state = &mut self.state;
+        let params = state.report.params.clone();
         if self.linked.as_ref().is_none_or(|linked| !std::sync::Arc::ptr_eq(linked, &params)) {
             // What no link can hold is not kept.
             state.kept_link = link::link(&state.report, &state.camera).ok();
@@ -220,6 +238,8 @@ impl App {
         let title = title(&self.state.report, self.cards.open());
         if title != self.title {
             self.title.clone_from(&title);
+            #[cfg(target_arch = "wasm32")]
+            crate::page::name(&title);
             context.send_viewport_cmd(egui::ViewportCommand::Title(title));
         }
     }
@@ -253,7 +273,11 @@ impl eframe::App for App {
         actions.into_iter().for_each(|action| self.act(ui.ctx(), action));
         self.name_window(ui.ctx());
         #[cfg(target_arch = "wasm32")]
-        crate::files::hand_out();
+        {
+            crate::files::hand_out();
+            // What the keyboard is at, for those who do not see it.
+            crate::page::tell(&ui.ctx().output(|output| output.events_description()));
+        }
         if self.state.report.playing {
             ui.ctx().request_repaint();
         }

@@ -13,6 +13,10 @@ extern "C" {
     pub fn download(name: &str, bytes: &[u8]);
     /// Asks for files; `take(names, bytes of each)` is called when they are read.
     pub fn pick(accept: &str, take: &JsValue);
+    /// What the page is called: what it shows.
+    pub fn name(title: &str);
+    /// Says something to those who do not see the canvas, if it is not empty.
+    pub fn tell(words: &str);
     /// The first picture is drawn.
     pub fn ready();
     /// The app cannot go on.

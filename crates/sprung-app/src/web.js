@@ -34,6 +34,16 @@ export function pick(accept, take) {
   input.click();
 }
 
+// What the page is called: what it shows.
+export function name(title) {
+  document.title = title;
+}
+
+// Says something to those who do not see the canvas: screen readers read out what changes there.
+export function tell(words) {
+  if (words) document.getElementById("words").textContent = words;
+}
+
 // The app has drawn its first picture: what was shown while it loaded goes.
 export function ready() {
   document.dispatchEvent(new CustomEvent("sprung-ready"));
