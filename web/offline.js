@@ -1,6 +1,7 @@
 // Keeps the page's files, so that it works without a network after the first visit. Files of another build are another cache's.
 
-import { FILES, BUILD } from "./build.js";
+/* global BUILD, FILES */
+importScripts("build.js");
 
 const cache = () => caches.open(BUILD);
 

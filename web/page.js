@@ -43,7 +43,7 @@ async function start() {
   await init({ module_or_path: fetched("sprung-app_bg.wasm", sizes["sprung-app_bg.wasm"]) });
   // After that: what must not be late for the first picture.
   if ("serviceWorker" in navigator && isSecureContext) {
-    await navigator.serviceWorker.register("offline.js", { type: "module" });
+    await navigator.serviceWorker.register("offline.js");
   }
 }
 

@@ -102,18 +102,90 @@ async function press(page, ...keys) {
   for (const key of keys) await page.keyboard.press(key, { delay: 30 });
 }
 
+// What the canvas shows, as a picture.
+async function drawn(page, name) {
+  const picture = await page.screenshot({ path: join(tmpdir(), `sprung-${name}.png`) });
+  assert.ok(picture.length > 20_000, `${name} has ${picture.length} bytes: it is blank`);
+  return picture;
+}
+
 for (const way of Object.keys(WAYS)) {
   test(`it loads and moves with ${way}`, async () => {
     const { context, page, wrong } = await opened(way);
     await titled(page, "jelly – sprung");
-    const drawn = await page.evaluate(() => "gpu" in navigator && navigator.gpu.requestAdapter().then((it) => it !== null));
-    assert.equal(drawn, way === "WebGPU");
-    await page.waitForTimeout(1500);
+    const has = await page.evaluate(async () => "gpu" in navigator && (await navigator.gpu.requestAdapter()) !== null);
+    assert.equal(has, way === "WebGPU");
     await press(page, "Space");
     await titled(page, "jelly, paused – sprung");
-    const picture = await page.screenshot({ path: join(tmpdir(), `sprung-${way}.png`) });
-    assert.ok(picture.length > 30_000, `the picture has ${picture.length} bytes: it is blank`);
+    await drawn(page, way);
     assert.deepEqual(wrong, []);
     await context.close();
   });
 }
+
+test("every scene of the report opens and plays, and steps", async () => {
+  const { context, page, wrong } = await opened();
+  for (const [key, name] of [["1", "spring"], ["2", "chain"], ["4", "cloth"], ["3", "jelly"]]) {
+    await press(page, key);
+    await titled(page, `${name} – sprung`);
+    await press(page, "s");
+    await titled(page, `${name}, paused – sprung`);
+    await drawn(page, name);
+  }
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test("a link is a scene, there and back", async () => {
+  const { context, page, wrong } = await opened("WebGL2", { fragment: "#scene=chain&view=0,-2,0,14,0.3,0.2" });
+  await titled(page, "chain – sprung");
+  await press(page, "Space");
+  await titled(page, "chain, paused – sprung");
+  await press(page, "Control+l");
+  const link = await page.waitForFunction(() => navigator.clipboard.readText().then((text) => text.includes("#") && text));
+  const { hash } = new URL(await link.jsonValue());
+  assert.match(hash, /^#v=[0-9.]+&scene=chain&view=0,-2,0,14,0\.3,0\.2$/);
+  await context.close();
+  const again = await opened("WebGL2", { fragment: hash });
+  await titled(again.page, "chain – sprung");
+  assert.deepEqual([...wrong, ...again.wrong], []);
+  await again.context.close();
+});
+
+test("a hostile link is refused with a sentence, and the page goes on", async () => {
+  const { context, page, wrong } = await opened("WebGL2", { fragment: "#toml=AAAA" });
+  await titled(page, "jelly, card: That did not work – sprung");
+  await press(page, "Escape");
+  await titled(page, "jelly – sprung");
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test("it works without a network after the first visit", async () => {
+  const { context, page, wrong } = await opened();
+  await page.waitForFunction(() => navigator.serviceWorker.ready.then(({ active }) => active.state === "activated"));
+  await context.setOffline(true);
+  await page.reload();
+  await page.waitForSelector("#loading", { state: "hidden", timeout: 120_000 });
+  await titled(page, "jelly – sprung");
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test("it is a phone's page, too", async () => {
+  const { context, page, wrong } = await opened("WebGL2", {
+    viewport: { width: 390, height: 844 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
+  await titled(page, "jelly – sprung");
+  await drawn(page, "phone");
+  await page.touchscreen.tap(24, 20);
+  await titled(page, "jelly, paused – sprung");
+  await page.setViewportSize({ width: 844, height: 390 });
+  await page.waitForTimeout(500);
+  await drawn(page, "phone-across");
+  assert.deepEqual(wrong, []);
+  await context.close();
+});

@@ -87,7 +87,7 @@ fn describe(folder: &Path) -> Outcome {
     files.push("sizes.json".to_owned());
     let quoted: Vec<String> = files.iter().map(|name| format!("  \"{name}\",\n")).collect();
     let build = format!("sprung {} {:016x}", env!("CARGO_PKG_VERSION"), build.finish());
-    write("build.js", format!("export const BUILD = \"{build}\";\nexport const FILES = [\n  \"./\",\n{}];\n", quoted.concat()))?;
+    write("build.js", format!("self.BUILD = \"{build}\";\nself.FILES = [\n  \"./\",\n{}];\n", quoted.concat()))?;
     if compressed > MOST_BYTES {
         return Err(format!("the page has {compressed} bytes to the first motion, and at most {MOST_BYTES} are allowed"));
     }

@@ -11,7 +11,7 @@ use crate::files::{Files, Origin};
 #[cfg(target_arch = "wasm32")]
 use crate::link;
 use crate::settings::Settings;
-use crate::state::{AppState, Tool};
+use crate::state::{AppState, Shown, Tool};
 use crate::view::View;
 use crate::{card, explain, panel, plots, theme, timeline};
 
@@ -35,8 +35,6 @@ pub struct App {
     cards: card::Cards,
     /// The scene that the camera was set up for.
     serial: Option<u64>,
-    /// There is no room for the panel beside the scene.
-    is_narrow: bool,
     /// From where the first scene is to be seen.
     first_view: Option<Turntable>,
     /// How much larger everything is, to be kept.
@@ -68,6 +66,7 @@ impl App {
             hovered: None,
             pointed_out: Vec::new(),
             shown: settings.shown(),
+            is_narrow: false,
             overlays: Default::default(),
             filming: Default::default(),
             pixels_per_point: 1.0,
@@ -92,7 +91,6 @@ impl App {
             explain: Default::default(),
             cards: Default::default(),
             serial: None,
-            is_narrow: false,
             first_view: None,
             zoom: settings.zoom(),
             title: String::new(),
@@ -118,17 +116,17 @@ impl App {
 
     fn show(&mut self, ui: &mut egui::Ui) {
         let is_narrow = ui.available_width() < NARROW;
-        if is_narrow && !self.is_narrow {
-            // The scene first: the panel folds away until it is asked for.
-            self.state.shown.controls = false;
+        if is_narrow && !self.state.is_narrow {
+            // The scene first: the parts beside it fold away until they are asked for.
+            self.state.shown = Shown { controls: false, plots: false, explain: false, ..self.state.shown };
         }
-        self.is_narrow = is_narrow;
+        self.state.is_narrow = is_narrow;
         let state = &mut self.state;
         theme::apply(ui.ctx(), state.appearance.theme);
         if !state.shown.presentation {
             egui::Panel::top("bar").show(ui, |ui| panel::bar(ui, state));
             egui::Panel::bottom("timeline").show(ui, |ui| self.timeline.show(ui, state));
-            if state.shown.controls && self.is_narrow {
+            if state.shown.controls && is_narrow {
                 // Below the scene, as wide as the screen: there is no room beside it.
                 let most = 0.5 * ui.available_height();
                 let panel = egui::Panel::bottom("controls below").exact_size(most);
@@ -141,7 +139,7 @@ impl App {
                 panel.show(ui, |ui| self.controls.show(ui, state));
             }
             if state.shown.explain {
-                explain::panel(ui).show(ui, |ui| self.explain.show(ui, state));
+                explain::panel(ui, is_narrow).show(ui, |ui| self.explain.show(ui, state));
             }
             if state.shown.plots {
                 plots::panel(ui).show(ui, |ui| self.plots.show(ui, state));
@@ -169,9 +167,9 @@ impl App {
             Action::Scissors => {
                 state.tool = if state.tool == Tool::Hand { Tool::Scissors } else { Tool::Hand };
             }
-            Action::Panel => state.shown.controls ^= true,
-            Action::Plots => state.shown.plots ^= true,
-            Action::Explain => state.shown.explain ^= true,
+            Action::Panel => toggle(state, |shown| &mut shown.controls),
+            Action::Plots => toggle(state, |shown| &mut shown.plots),
+            Action::Explain => toggle(state, |shown| &mut shown.explain),
             Action::NextStage => self.explain.next_stage(state),
             Action::Help => state.shown.help ^= true,
             Action::Presentation => state.shown.presentation ^= true,
@@ -243,6 +241,15 @@ impl App {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title));
         }
     }
+}
+
+/// Shows or hides a part beside the scene; where it is narrow, one at a time.
+fn toggle(state: &mut AppState, part: fn(&mut Shown) -> &mut bool) {
+    let is_on = !*part(&mut state.shown);
+    if state.is_narrow {
+        state.shown = Shown { controls: false, plots: false, explain: false, ..state.shown };
+    }
+    *part(&mut state.shown) = is_on;
 }
 
 /// The scene, what it is doing unless it plays, and the card that is up: "jelly, paused – sprung".

@@ -88,6 +88,8 @@ pub struct AppState {
     pub pointed_out: Vec<Pick>,
     /// Which parts are shown.
     pub shown: Shown,
+    /// The window is as narrow as a phone: there is no room for parts beside the scene, nor for words on buttons.
+    pub is_narrow: bool,
     /// What is written over the scene.
     pub overlays: Overlays,
     /// How pictures and films are made, and what becomes of a film.

@@ -37,6 +37,13 @@ impl TimelineBar {
     pub fn show(&mut self, ui: &mut Ui, state: &mut AppState) {
         ui.add_space(3.0);
         let width = ui.available_width();
+        if state.is_narrow {
+            // The strip goes back and forth, and the clock is in the scene: steps one by one are for larger windows.
+            self.speedometer.show(ui, &state.report, false);
+            strip(ui, state);
+            ui.add_space(4.0);
+            return;
+        }
         ui.horizontal_wrapped(|ui| {
             buttons(ui, state);
             moment(ui, &state.report);

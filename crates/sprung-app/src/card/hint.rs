@@ -24,7 +24,9 @@ pub fn show(context: &Context, state: &mut AppState, scene: Rect) {
             ui.horizontal(|ui| {
                 icon::label(ui, icon::PULL, ui.visuals().hyperlink_color);
                 ui.label(RichText::new("Pull it!").size(16.0).strong());
-                ui.weak("Press on the jelly and drag.");
+                if !state.is_narrow {
+                    ui.weak("Press on the jelly and drag.");
+                }
                 let close = IconButton::new(icon::CLOSE, "Close the hint").with(|button| button.small());
                 if close.show(ui).clicked() {
                     state.hint = false;

@@ -36,7 +36,10 @@ pub struct Explain {
 }
 
 /// The panel it lies in: wide enough for a vector in a line.
-pub fn panel(ui: &Ui) -> egui::Panel {
+pub fn panel(ui: &Ui, is_narrow: bool) -> egui::Panel {
+    if is_narrow {
+        return egui::Panel::bottom("explain below").exact_size(0.5 * ui.available_height());
+    }
     let width = ui.ctx().content_rect().width();
     egui::Panel::right("explain")
         .resizable(true)
