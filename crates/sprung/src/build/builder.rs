@@ -265,6 +265,7 @@ impl ModelBuilder {
             vertices: SurfaceVertices::Points,
             triangles,
             fans: Vec::new(),
+            stands_for_body: false,
         });
         Ok(())
     }
@@ -306,6 +307,7 @@ impl ModelBuilder {
             vertices: SurfaceVertices::Weighted(vertices),
             triangles,
             fans: Vec::new(),
+            stands_for_body: false,
         });
         Ok(())
     }
@@ -336,6 +338,13 @@ impl ModelBuilder {
         }
         surface.fans = fans;
         Ok(())
+    }
+
+    /// The surface that was added last is what is meant to be seen of its body: see [`Surface::stands_for_body`].
+    pub fn show_surface_alone(&mut self) {
+        if let Some(surface) = self.surfaces.last_mut() {
+            surface.stands_for_body = true;
+        }
     }
 
     /// How many points there are so far.

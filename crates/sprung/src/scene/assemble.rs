@@ -223,7 +223,11 @@ impl<'a> Assembly<'a> {
             }
         }
         .and_then(|()| self.builder.join_into_faces(surface.fans.clone()))
-        .map_err(|error| replaced(error, &format!("{path}.mesh")))
+        .map_err(|error| replaced(error, &format!("{path}.mesh")))?;
+        if surface.stands_for_body {
+            self.builder.show_surface_alone();
+        }
+        Ok(())
     }
 
     fn pin(&mut self, path: &str, body: &Body, points: &Range<usize>, pin: &Pin) -> Result<()> {

@@ -166,6 +166,7 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
             vertices,
             triangles: mesh.faces.triangles(),
             fans: mesh.faces.fans(),
+            stands_for_body: true,
         }),
         points,
         masses,

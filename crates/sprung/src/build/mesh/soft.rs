@@ -108,6 +108,7 @@ pub(crate) fn soft_body_within(mesh: &Mesh, material: &SoftMaterial, most_spring
             vertices: Some(vertices),
             triangles: surface,
             fans,
+            stands_for_body: true,
         }),
         point_of_vertex,
         points: filling.points,
