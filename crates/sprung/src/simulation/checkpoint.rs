@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Simulation, check_counters, check_lengths, hold_fixed_points, load};
+use super::Simulation;
+use super::beginning::{check_counters, check_lengths, hold_fixed_points, load};
 use crate::error::{Code, Error, Result};
 use crate::model::Model;
 use crate::params::Params;
