@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::Simulation;
+use super::{Checkpoint, Simulation};
 use crate::current::Current;
 use crate::energy::{Drives, LedgerSums};
 use crate::error::{Code, Error, Result};
@@ -38,18 +38,12 @@ impl Simulation {
         Ok(Self::begin(model, params, current))
     }
 
-    /// Goes on with a run from the parameters and the state that another simulation had: bit for bit as it would have gone
-    /// on there, its ledger and its watch over the energy too.
+    /// As [`resume_from`](Self::resume_from), from the parts of a checkpoint, without the energy ledger.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
-    pub fn resume(model: impl Into<Arc<Model>>, params: Params, mut state: State) -> Result<Self> {
-        let model = model.into();
-        params.validate(&model)?;
-        check_state(&model, &state)?;
-        hold_fixed_points(&params, &mut state);
-        let current = load(&model, &params, state);
-        Ok(Self::begin(model, params, current))
+    /// As [`resume_from`](Self::resume_from).
+    pub fn resume(model: impl Into<Arc<Model>>, params: Params, state: State) -> Result<Self> {
+        Self::resume_from(model, Checkpoint { state, params: params.into(), keeps_ledger: false })
     }
 
     /// Goes on from what has been checked.
@@ -104,7 +98,7 @@ fn check_state(model: &Model, state: &State) -> Result<()> {
     check_counters(state)
 }
 
-fn vectors(state: &State) -> [(&'static str, &Vec<Vec3>); 4] {
+pub(super) fn vectors(state: &State) -> [(&'static str, &Vec<Vec3>); 4] {
     [
         ("position", &state.position),
         ("position_low", &state.position_low),
