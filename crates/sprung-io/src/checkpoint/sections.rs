@@ -21,7 +21,7 @@ use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 use sprung::energy::LedgerSums;
-use sprung::{Checkpoint, Code, Error, Result, State};
+use sprung::{Checkpoint, Code, Error, Params, Result, State};
 
 use super::container::{Sections, damaged, write_header, write_section};
 use super::{Plan, Recording, Saved, VERSION};
@@ -184,12 +184,16 @@ fn read_section(saved: &mut Saved, hash: &mut u64, name: &str, content: &[u8]) -
         "velocities" => state.velocity = read.vec3s()?,
         "velocities-low" => state.velocity_low = read.vec3s()?,
         "parameters" => {
-            let short = read.short_params()?;
-            (params.dt, params.substeps, params.gravity) = (short.dt, short.substeps, short.gravity);
-            params.planes = short.planes;
-            params.external_forces = short.external_forces;
-            params.carried = short.carried;
-            params.grabs = short.grabs;
+            // The arrays have sections of their own.
+            *params = Params {
+                point_mass: params.point_mass.clone(),
+                point_pinned: params.point_pinned.clone(),
+                spring_stiffness: params.spring_stiffness.clone(),
+                spring_damping: params.spring_damping.clone(),
+                spring_rest_length: params.spring_rest_length.clone(),
+                spring_cut: params.spring_cut.clone(),
+                ..read.short_params()?
+            };
         }
         "masses" => params.point_mass = Arc::new(read.f32s()?),
         "pins" => params.point_pinned = Arc::new(read.bools()?),
