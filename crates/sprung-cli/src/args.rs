@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use sprung_io::checkpoint::MOST_FRAMES;
 use sprung_io::export::geometry::SCALE_RANGE;
 use sprung_render::export::{EXPORTERS, SIZE_RANGE};
 
@@ -109,7 +110,7 @@ pub struct RunArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Record frames 0 to N
-    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=MOST_FRAMES))]
     pub frames: Option<u64>,
     /// Record this many simulated seconds, rounded up to whole frames [default: 10]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
@@ -131,7 +132,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Write no frame before this one; the run starts at 0 all the same
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<u64>::new().range(0..=MOST_FRAMES))]
     pub from: Option<u64>,
     /// What leaves of the geometry.
     #[command(flatten)]
@@ -266,7 +267,7 @@ pub fn every(text: &str) -> Result<Every, String> {
         return Ok(Every::Time(Duration::from_secs_f64(time)));
     }
     match text.parse() {
-        Ok(frames @ 1..=100_000_000) => Ok(Every::Frames(frames)),
+        Ok(frames @ 1..=MOST_FRAMES) => Ok(Every::Frames(frames)),
         Ok(_) => Err("it must be from 1 to 100,000,000 frames".to_owned()),
         Err(_) => Err(told.to_owned()),
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use sprung::scene::{self, Scene};
 use sprung::{Code, Error, Inline, Result, Simulation, Workers};
-use sprung_io::checkpoint::{self, Resumed, Saved, Stored};
+use sprung_io::checkpoint::{self, Recording, Resumed, Saved, Stored};
 use sprung_io::{files, import};
 
 use crate::args::SceneArgs;
@@ -43,6 +43,15 @@ pub struct Begun {
     pub name: String,
     pub scene: Scene,
     pub simulation: Simulation,
+    /// The scene's `substeps`; of a checkpoint those of the run that it is of, which may have had a frame rate of its own.
+    pub steps_per_frame: u64,
+}
+
+impl Begun {
+    fn new(name: String, scene: Scene, simulation: Simulation) -> Self {
+        let steps_per_frame = simulation.params().substeps.into();
+        Self { name, scene, simulation, steps_per_frame }
+    }
 }
 
 /// The simulation of a scene at its start, or of a checkpoint.
@@ -50,7 +59,7 @@ pub fn begun(args: &SceneArgs, threads: Option<usize>) -> Result<Begun> {
     if !is_checkpoint(&args.scene) {
         let (name, scene) = scene(args)?;
         let simulation = simulation(&scene, threads)?;
-        return Ok(Begun { name, scene, simulation });
+        return Ok(Begun::new(name, scene, simulation));
     }
     let (path, saved) = saved(args)?;
     begun_from(path, &saved, threads)
@@ -84,7 +93,11 @@ pub fn begun_from(path: &Path, saved: &Saved, threads: Option<usize>) -> Result<
     let Resumed { scene, mut simulation, .. } = resumed(path, saved)?;
     simulation.keep_history(0);
     simulation.set_workers(workers(threads)?);
-    Ok(Begun { name: saved.scene_name.clone(), scene, simulation })
+    let mut begun = Begun::new(saved.scene_name.clone(), scene, simulation);
+    if let Some(Recording { plan, .. }) = &saved.recording {
+        begun.steps_per_frame = plan.steps_per_frame;
+    }
+    Ok(begun)
 }
 
 fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {

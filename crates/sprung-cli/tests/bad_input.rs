@@ -136,6 +136,10 @@ fn bad_arguments() {
         (&["run", "jelly", "--seconds", "0"], &["--seconds", "1e-6"]),
         (&["run", "jelly", "--seconds", "NaN"], &["--seconds", "finite"]),
         (&["run", "jelly", "--seconds", "1e9", "--fps", "1e6"], &["--seconds", "frames"]),
+        (
+            &["run", "spring", "--set", "dt=1e-9", "--fps", "1e-6", "--frames", "100000000", "--dry-run"],
+            &["would take 1e23 steps", "9007199254740992"],
+        ),
         (&["run", "jelly", "--frames", "3", "--seconds", "1"], &["--frames", "--seconds"]),
         (&["run", "jelly", "--threads", "0"], &["--threads"]),
         (&["run", "jelly", "--size", "10"], &["--size", "1280x720"]),

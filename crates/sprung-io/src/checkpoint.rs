@@ -19,7 +19,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use sprung::build::Mesh;
 use sprung::scene::Scene;
-use sprung::{Checkpoint, Code, Error, Model, Params, Result, Simulation};
+use sprung::{Checkpoint, Code, Error, MOST_STEPS, Model, Params, Result, Simulation};
 
 use crate::export::{Mark, Options};
 
@@ -29,6 +29,9 @@ pub use keeper::{Keeper, Stored};
 
 /// The ending of the names of checkpoints, without the dot.
 pub const ENDING: &str = "sprung";
+
+/// The number of the last frame of a run, at most.
+pub const MOST_FRAMES: u64 = 100_000_000;
 
 /// The newest version of the format, which is the one that is written.
 pub const VERSION: u32 = 2;
@@ -106,6 +109,20 @@ pub struct Plan {
     pub begun: u64,
     /// Once no frame is to follow: why, in a phrase. What is left to do then is to complete the files.
     pub ended: Option<String>,
+}
+
+impl Recording {
+    /// Whether its numbers fit each other.
+    fn is_sound(&self) -> bool {
+        let Plan { outputs, plot, steps_per_frame, last_frame, recorded, from, .. } = &self.plan;
+        let steps = steps_per_frame.checked_mul(*last_frame);
+        self.marks.len() == outputs.len() + usize::from(plot.is_some())
+            && *steps_per_frame > 0
+            && steps.is_some_and(|steps| steps <= MOST_STEPS)
+            && *last_frame <= MOST_FRAMES
+            && (1..=last_frame + 1).contains(recorded)
+            && from <= last_frame
+    }
 }
 
 /// A simulation that was taken up again.

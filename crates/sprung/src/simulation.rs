@@ -21,6 +21,7 @@ use crate::state::{Snapshot, State};
 use crate::watch::{self, Watch};
 use crate::workers::Workers;
 
+pub use beginning::MOST_STEPS;
 use changing::Placed;
 pub use checkpoint::Checkpoint;
 

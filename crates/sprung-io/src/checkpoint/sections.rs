@@ -151,6 +151,9 @@ pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
             Some(_) => return Err(damaged(&format!("the section `{name}` is there twice"))),
         }
     }
+    if saved.recording.as_ref().is_some_and(|recording| !recording.is_sound()) {
+        return Err(damaged("what it says of its run does not fit together"));
+    }
     if saved.checkpoint.state.hash() != hash {
         return Err(damaged("its positions and velocities do not match their hash"));
     }

@@ -1,7 +1,7 @@
 //! Every cut and every flipped byte is noticed, and the section is named.
 
 use sprung::Code;
-use sprung_io::checkpoint::MAGIC;
+use sprung_io::checkpoint::{MAGIC, Recording};
 
 use crate::{bytes_of, read, small};
 
@@ -157,6 +157,20 @@ fn what_has_right_checksums_and_wrong_content_gets_a_sentence() {
         text(&bytes_of(&saved)),
         "is damaged: the section `outputs` names a file that there cannot be"
     );
+    // A run that there cannot be: whoever counts its steps or takes its marks relies on it.
+    let spoils: [fn(&mut Recording); 6] = [
+        |recording| recording.marks.truncate(2),
+        |recording| recording.plan.steps_per_frame = 0,
+        |recording| recording.plan.steps_per_frame = u64::MAX,
+        |recording| recording.plan.last_frame = u64::MAX,
+        |recording| recording.plan.recorded = recording.plan.last_frame + 2,
+        |recording| recording.plan.from = recording.plan.last_frame + 1,
+    ];
+    for spoil in spoils {
+        let mut saved = small();
+        spoil(saved.recording.as_mut().expect("it is of a run"));
+        assert_eq!(text(&bytes_of(&saved)), "is damaged: what it says of its run does not fit together");
+    }
 }
 
 #[test]

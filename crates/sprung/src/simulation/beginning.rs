@@ -18,7 +18,7 @@ use crate::watch::Watch;
 use crate::workers::Inline;
 
 /// The step that a state may be at when a run begins: whole numbers up to here are exact in float64.
-const MOST_STEPS: u64 = 1 << 53;
+pub const MOST_STEPS: u64 = 1 << 53;
 
 impl Simulation {
     /// Begins a run: a model, its parameters and a state to start from. Velocities of fixed points become zero, and the

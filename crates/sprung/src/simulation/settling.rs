@@ -102,7 +102,8 @@ impl Simulation {
              allowed",
             options.max_steps
         );
-        Err(Error::new(Code::NotSettled, sentence).with_fix("allow a larger residual force or more steps"))
+        Err(Error::new(Code::NotSettled, sentence)
+            .with_fix("hold every body by a pin or a plane, or allow a larger residual force"))
     }
 }
 
