@@ -5,11 +5,12 @@
 // Printing is what this program is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod fuzz;
 mod instructions;
 mod levels;
+mod readers;
 mod shell;
 mod stages;
-mod usd;
 mod window;
 mod window_story;
 
@@ -52,28 +53,26 @@ const STAGES: &[Stage] = &[
         about: "a real window on a virtual display does what a person asks of it",
         run: window_story::run_all,
     },
-    Stage { name: "python", about: "NumPy reads what the command writes", run: stages::python },
+    Stage { name: "python", about: "NumPy reads what the command writes", run: readers::python },
     Stage {
         name: "exports",
         about: "meshio, trimesh and VTK find every vertex where the command says it is",
-        run: stages::exports,
+        run: readers::exports,
     },
     Stage {
         name: "usd",
         about: "OpenUSD, the Khronos validator and loaders of glTF find what the archive has",
-        run: usd::usd,
+        run: readers::usd,
     },
-    Stage { name: "blender", about: "so does Blender, which plays the caches", run: stages::blender },
-    Stage { name: "blender-usd", about: "and plays USD and glTF", run: usd::blender },
+    Stage {
+        name: "blender",
+        about: "so does Blender, with meshes, caches, USD and glTF",
+        run: readers::blender,
+    },
     Stage {
         name: "fuzz",
-        about: "a minute of random scene files, and half of one of checkpoints, crashes nothing",
-        run: stages::fuzz,
-    },
-    Stage {
-        name: "fuzz-meshes",
-        about: "nor do random mesh files, for each reader in turn",
-        run: stages::fuzz_meshes,
+        about: "a minute of random scenes, half of one of checkpoints and a quarter for each format of meshes crash nothing",
+        run: fuzz::fuzz,
     },
     Stage {
         name: "licences",
