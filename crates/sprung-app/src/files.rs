@@ -148,9 +148,7 @@ fn kept(path: &Path) -> Kept {
     let file = path.display().to_string();
     let path = path.to_owned();
     let read = move |options: &Options| {
-        let stored = Stored::open(&path)?;
-        options.check_memory(stored.memory(), "the checkpoint")?;
-        stored.read()
+        Stored::open(&path)?.read(&|needed, what| options.check_memory(needed, what))
     };
     Kept { name, bring: Arc::new(move |options| running(read(options), &file, options)) }
 }

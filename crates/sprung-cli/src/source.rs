@@ -73,14 +73,7 @@ pub fn saved(args: &SceneArgs) -> Result<(&Path, Saved)> {
         return Err(error.in_file(format!("--set {assignment}")).with_fix("leave it out"));
     }
     let path = Path::new(&args.scene);
-    Ok((path, read(path, &Stored::open(path)?)?))
-}
-
-/// Reads a checkpoint, after asking whether there is memory for it.
-pub fn read(path: &Path, stored: &Stored) -> Result<Saved> {
-    let named = |error: Error| error.in_file(path.display().to_string());
-    memory::check(stored.memory(), "the checkpoint").map_err(named)?;
-    stored.read()
+    Ok((path, Stored::open(path)?.read(&memory::check)?))
 }
 
 /// The simulation that a checkpoint holds, with its scene.
@@ -125,11 +118,17 @@ fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
 
 /// The simulation of a scene, without a history, after asking whether there is memory for it.
 pub fn simulation(scene: &Scene, threads: Option<usize>) -> Result<Simulation> {
-    memory::check(scene.estimated_bytes(), "the scene")?;
+    check_memory(scene)?;
     let mut simulation = scene.simulation()?;
     simulation.keep_history(0);
     simulation.set_workers(workers(threads)?);
     Ok(simulation)
+}
+
+/// Asks whether there is memory for a scene.
+pub fn check_memory(scene: &Scene) -> Result<()> {
+    let checked = memory::check(scene.estimated_bytes(), "the scene");
+    checked.map_err(|error| error.with_fix("use fewer points or a smaller radius"))
 }
 
 /// Worker threads to lend to the engine: so many, or one for each processor.

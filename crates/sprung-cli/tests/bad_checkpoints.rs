@@ -74,6 +74,7 @@ fn what_is_no_checkpoint_or_damaged() {
     large.set_len(1 << 42).unwrap();
     let line = all("large.sprung");
     assert!(line.starts_with("large.sprung: the checkpoint needs about"), "{line}");
+    assert!(line.ends_with("; free some, or go on with it on a machine that has more"), "{line}");
     assert!(!at("b.csv").exists() && !at("b.csv.partial").exists());
     assert_eq!(fs::read(at("a.sprung")).unwrap(), whole);
 }

@@ -136,6 +136,15 @@ pub struct Resumed {
     pub simulation: Simulation,
 }
 
+/// Asked before memory is taken: how many bytes, for what. Refuses if there are not so many.
+pub type AskMemory<'a> = dyn Fn(u64, &str) -> Result<()> + 'a;
+
+/// Asks for memory. A checkpoint is as large as it is: what helps is not what helps a scene.
+fn ask(ask: &AskMemory<'_>, bytes: u64, what: &str) -> Result<()> {
+    let fix = "free some, or go on with it on a machine that has more";
+    ask(bytes, what).map_err(|error| error.with_fix(fix))
+}
+
 impl Saved {
     /// A simulation as it is now.
     pub fn new(scene_name: &str, scene: &Scene, simulation: &mut Simulation) -> Self {
@@ -196,14 +205,14 @@ impl Saved {
         Simulation::resume_from(model, self.checkpoint.clone())
     }
 
-    /// Builds the scene and goes on with the simulation. `check` is asked before memory is taken: how many bytes, for what.
+    /// Builds the scene and goes on with the simulation.
     ///
     /// # Errors
-    /// Those of `check`, of [`scene`](Self::scene) and of [`simulation`](Self::simulation), in one sentence about the file.
-    pub fn resume(&self, check: &dyn Fn(u64, &str) -> Result<()>) -> Result<Resumed> {
+    /// Those of `memory`, of [`scene`](Self::scene) and of [`simulation`](Self::simulation), in one sentence about the file.
+    pub fn resume(&self, memory: &AskMemory<'_>) -> Result<Resumed> {
         let resumed = || -> Result<Resumed> {
             let scene = self.scene()?;
-            check(scene.estimated_bytes(), "the scene in it")?;
+            ask(memory, scene.estimated_bytes(), "the scene in it")?;
             let (model, params, _) = scene.build()?;
             Ok(Resumed { simulation: self.simulation(model)?, scene, params })
         };

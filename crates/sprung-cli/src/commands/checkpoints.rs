@@ -14,7 +14,7 @@ use super::record::Recorder;
 use super::run::Plan;
 use crate::args::{Every, RunArgs};
 use crate::console::{complain, note};
-use crate::source;
+use crate::memory;
 
 /// How often a checkpoint is taken when nothing is said: what a kill may cost at most.
 const EVERY: Every = Every::Time(Duration::from_secs(60));
@@ -164,7 +164,7 @@ fn refuse_if_unfinished(path: &Path, keeper: &Keeper) -> Result<()> {
     let Some(stored) = keeper.stored()? else { return Ok(()) };
     let name = path.display();
     // Something else of this name is not ours to write over either.
-    let saved = source::read(path, &stored).map_err(|error| {
+    let saved = stored.read(&memory::check).map_err(|error| {
         let error = Error::new(error.code(), format!("is there already, and {}", error.sentence()));
         error.in_file(name.to_string()).with_fix("give another name, or remove it")
     })?;

@@ -12,13 +12,14 @@ use super::run::{Plan, Run, frames_in};
 use crate::args::{self, RunArgs};
 use crate::console::{counted, note, say};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::source::{self, Begun};
 
 /// Goes on with the run that a checkpoint is of.
 pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
     let interrupt = Interrupt::listen()?;
     let (keeper, stored) = Keeper::resume(file)?;
-    let mut saved = source::read(file, &stored)?;
+    let mut saved = stored.read(&memory::check)?;
     let named = |error: Error| error.in_file(file.display().to_string());
     let Some(mut recording) = saved.recording.take() else {
         let error = Error::new(Code::Conflict, "holds a simulation, and no run that could be completed");
