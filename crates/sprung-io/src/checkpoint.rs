@@ -33,8 +33,8 @@ pub const ENDING: &str = "sprung";
 /// The number of the last frame of a run, at most.
 pub const MOST_FRAMES: u64 = 100_000_000;
 
-/// The newest version of the format, which is the one that is written.
-pub const VERSION: u32 = 2;
+/// The version of the format, of which there is one so far.
+pub const VERSION: u32 = 1;
 
 /// Whether a file of this name is a checkpoint.
 pub fn is_name(path: &Path) -> bool {
