@@ -74,7 +74,7 @@ pub fn run(options: Options) -> Result<()> {
 fn fresh_context() -> Option<egui::Context> {
     let stored = eframe::storage_dir(APP_ID)?.join("app.ron");
     // What egui stores has a few KiB; of a file that is much longer nothing is believed.
-    let text = sprung_io::files::read(&stored, 16 << 20).map(|bytes| String::from_utf8(bytes).ok());
+    let text = sprung_io::files::read_ordinary(&stored, 16 << 20).map(|bytes| String::from_utf8(bytes).ok());
     match text {
         Ok(Some(text)) if zooms_are_sane(&text) => None,
         // There is none yet.

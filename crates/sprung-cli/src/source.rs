@@ -12,12 +12,15 @@ use crate::args::SceneArgs;
 use crate::console::note;
 use crate::memory;
 
+/// What a scene is called that came through a pipe.
+const HANDED_OVER: &str = "scene";
+
 /// The scene with its changes, and the name to call it by.
 pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
     scene_and_file(args).map(|(name, scene, _)| (name, scene))
 }
 
-/// The same, and the file that it was read from, if it is not built in.
+/// The same, and the file that it was read from, if it is in one: not built in, and not handed over by the shell.
 pub fn scene_and_file(args: &SceneArgs) -> Result<(String, Scene, Option<PathBuf>)> {
     let (name, mut scene, file) = named(&args.scene)?;
     for assignment in &args.set {
@@ -105,9 +108,17 @@ fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
     match Scene::builtin(text) {
         Ok(scene) => Ok((text.to_owned(), scene, None)),
         Err(_) if looks_like_a_file => {
-            let bytes = files::read(path, scene::MAX_BYTES)?;
+            let bytes = files::read_or_take(path, scene::MAX_BYTES)?;
+            let scene = Scene::from_bytes(&bytes, text)?;
+            if files::is_handed_over(path) {
+                // It has no name, and lies in no folder.
+                return Ok((HANDED_OVER.to_owned(), scene, None));
+            }
             let name = path.file_stem().map_or(text.to_owned(), |stem| stem.to_string_lossy().into_owned());
-            Ok((name, Scene::from_bytes(&bytes, text)?, Some(path.to_owned())))
+            Ok((name, scene, Some(path.to_owned())))
+        }
+        Err(error) if text == "-" && cfg!(unix) => {
+            Err(error.with_fix("/dev/stdin is a scene from the standard input"))
         }
         Err(error) if path.with_extension("toml").is_file() => {
             Err(error.with_fix(format!("did you mean {text}.toml?")))
