@@ -6,11 +6,11 @@ use sprung::{Code, Error, Result, Simulation, significant as rounded};
 use sprung_io::RunInfo;
 use sprung_io::checkpoint::{Keeper, MOST_FRAMES, Plan as Recorded, Saved};
 
-use super::checkpoints::Checkpoints;
+use super::checkpoints::{Checkpoints, recorded_of};
 use super::record::Recorder;
 use super::run::{Plan, Run, frames_in};
 use crate::args::{self, RunArgs};
-use crate::console::{counted, note, say};
+use crate::console::{note, say};
 use crate::interrupt::Interrupt;
 use crate::memory;
 use crate::source::{self, Begun};
@@ -85,11 +85,16 @@ fn lengthen(args: &RunArgs, plan: &mut Recorded, simulation: &Simulation) -> Res
         let error = Error::new(Code::Conflict, "holds a run that is over, so it cannot be made longer");
         return Err(error.with_fix("`sprung run` with this checkpoint and -o goes on in other files"));
     }
-    if last_frame + 1 < plan.recorded || last_frame < plan.from || last_frame > MOST_FRAMES {
-        let sentence = format!(
-            "holds {} of a run, and it was asked to end with frame {last_frame}",
-            counted(plan.recorded, "frame")
-        );
+    let last_recorded = plan.recorded - 1;
+    if last_frame < last_recorded {
+        let sentence =
+            format!("holds a run up to frame {last_recorded}, so that it cannot end with frame {last_frame}");
+        return Err(Error::new(Code::OutOfRange, sentence).with_fix("choose a later end"));
+    }
+    if last_frame < plan.from || last_frame > MOST_FRAMES {
+        let (from, most) = (plan.from, MOST_FRAMES);
+        let sentence =
+            format!("holds a run that can end with frame {from} to {most}, and not with frame {last_frame}");
         return Err(Error::new(Code::OutOfRange, sentence));
     }
     plan.last_frame = last_frame;
@@ -98,15 +103,10 @@ fn lengthen(args: &RunArgs, plan: &mut Recorded, simulation: &Simulation) -> Res
 
 /// Says where it goes on.
 fn tell(file: &Path, saved: &Saved, plan: &Recorded) {
-    let time = rounded(saved.checkpoint.state.time);
-    let of = plan.last_frame + 1;
-    note(format_args!(
-        "Going on with {}: {} of {of} at t = {time} s.",
-        file.display(),
-        counted(plan.recorded, "frame")
-    ));
+    let (there, time) = (recorded_of(plan.recorded, plan.last_frame), rounded(saved.checkpoint.state.time));
+    note(format_args!("Going on with {}, which has {there}, up to t = {time} s.", file.display()));
     if let Some(reason) = plan.ended.as_ref().filter(|reason| !reason.is_empty()) {
-        note(format_args!("The run had ended: {reason}. Its files are completed."));
+        note(format_args!("The run had ended: {reason}. Only its files are to be completed."));
     }
     let here = env!("CARGO_PKG_VERSION");
     if saved.program != here {

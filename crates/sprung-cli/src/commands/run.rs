@@ -17,7 +17,7 @@ use super::record::{Recorder, check_names};
 use super::resume;
 use super::show::describe;
 use crate::args::RunArgs;
-use crate::console::{bytes, complain, counted, note, progress, say, seconds};
+use crate::console::{bytes, complain, counted, grouped, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
 use crate::source::{self, Begun};
 
@@ -105,14 +105,22 @@ impl Run {
         }
         errors.extend(checkpoints.and_then(Checkpoints::failure));
         all_said(errors)?;
-        if !quiet {
+        let left = plan.frames + 1 - recorded;
+        if !quiet && left == 0 {
+            let hash = simulation.state_hash();
+            say(format_args!(
+                "{name}: there was nothing left to simulate, and its files are complete now; state hash {hash:016x}"
+            ));
+        } else if !quiet {
             // What was done here and now: another run may have led to where this one began.
             let (step, time) = simulation.now();
             let pace = (time - begun_at) / simulated_in.as_secs_f64().max(1e-9);
-            let frames = if recorded == 0 { "frame" } else { "more frame" };
+            let frames = match recorded {
+                0 => counted(left, "frame"),
+                _ => format!("{} ({} in all)", counted(left, "more frame"), grouped(plan.frames + 1)),
+            };
             say(format_args!(
-                "{name}: {}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
-                counted(plan.frames + 1 - recorded, frames),
+                "{name}: {frames}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
                 counted(step - first_step, "step"),
                 rounded(time - begun_at),
                 seconds(simulated_in),
@@ -276,6 +284,12 @@ fn settle(quiet: bool, simulation: &mut Simulation, interrupt: &Interrupt) -> Re
     let settled = simulation.settle_with(SettleOptions::default(), &mut |so_far| {
         bar.set_position(so_far.steps);
         if interrupt.came() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let settled = settled.map_err(|error| match error.code() {
+        Code::NotSettled => error.with_fix(
+            "hold every body by a pin or a plane, or leave out --settle and let it rest in a longer run",
+        ),
+        _ => error,
     })?;
     bar.finish_and_clear();
     if !quiet {

@@ -5,6 +5,7 @@ use sprung::stability::{self, Limit, Setter, Sharp};
 use sprung::{Energy, Result, Simulation, significant as rounded};
 use sprung_io::checkpoint::Recording;
 
+use super::checkpoints::recorded_of;
 use crate::args::ShowArgs;
 use crate::console::{counted, grouped, say};
 use crate::source::{self, Begun};
@@ -151,9 +152,9 @@ fn print_checkpoint(checkpoint: &OfCheckpoint) {
     let OfCheckpoint { program, step, time, recording } = checkpoint;
     row("checkpoint", format!("step {}, t = {} s, by sprung {program}", grouped(*step), rounded(*time)));
     let Some(recording) = recording else { return };
-    let frames = format!("{} of {}", grouped(recording.recorded_frames), grouped(recording.last_frame + 1));
+    let frames = recorded_of(recording.recorded_frames, recording.last_frame);
     row(
-        "frames recorded",
+        "recorded",
         match recording.ended.as_deref() {
             None => frames,
             Some("") => format!("{frames}; the run is over"),

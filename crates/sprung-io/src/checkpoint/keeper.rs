@@ -38,9 +38,8 @@ impl Stored {
     /// Those of `memory` and of [`Saved::read_from`], naming the file.
     pub fn read(&self, memory: &AskMemory<'_>) -> Result<Saved> {
         // At most what it holds, and once more its largest section.
-        let read = ask(memory, self.bytes.saturating_mul(2), "the checkpoint").and_then(|()| {
-            Saved::read_from(&mut BufReader::with_capacity(1 << 16, &self.file), self.bytes)
-        });
+        let read = ask(memory, self.bytes.saturating_mul(2), "the checkpoint")
+            .and_then(|()| Saved::read_from(&mut BufReader::with_capacity(1 << 16, &self.file), self.bytes));
         read.map_err(|error| error.in_file(self.path.display().to_string()))
     }
 }
@@ -72,7 +71,10 @@ impl Keeper {
     /// [`Code::Unreadable`] if it is not there, and as [`begin`](Self::begin).
     pub fn resume(path: &Path) -> Result<(Self, Stored)> {
         drop(files::open_ordinary(path)?);
-        let held = files::hold(path)?;
+        let held = files::hold(path).map_err(|error| match error.code() {
+            Code::Unwritable => error.with_fix("wait until it is over"),
+            _ => error,
+        })?;
         let again = held.try_clone().map_err(|error| files::read_error(path, &error))?;
         Ok((Self { path: path.to_owned(), held: Some(held) }, Stored::of(path, again)?))
     }

@@ -103,7 +103,7 @@ impl Simulation {
             options.max_steps
         );
         Err(Error::new(Code::NotSettled, sentence)
-            .with_fix("hold every body by a pin or a plane, or allow a larger residual force"))
+            .with_fix("hold every body by a pin or a plane, as what falls or drifts never rests"))
     }
 }
 
