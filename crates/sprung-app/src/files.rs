@@ -183,7 +183,7 @@ pub fn read_scene(path: &Path) -> Result<Source, Refused> {
     let bytes =
         sprung_io::files::read_ordinary(path, MAX_BYTES).map_err(|error| Refused { error, text: None })?;
     let mut source = parse_scene(&bytes, &path.display().to_string())?;
-    // What is odd about a mesh is said by the command, which has a place for notes.
+    // What is odd about a mesh is told by a card once the scene is open.
     match sprung_io::import::load_meshes(&mut source.scene, Some(path)) {
         Ok(_) => Ok(source),
         Err(error) => {

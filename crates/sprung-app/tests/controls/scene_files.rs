@@ -166,3 +166,36 @@ fn a_dropped_file_opens() {
     assert!(!state(&window).refused.is_empty());
     assert_eq!(report(&window).opened.name, "lone");
 }
+
+/// A mesh with a vertex twice and one too many, and a face without area: used, and said.
+#[test]
+fn what_is_odd_about_a_mesh_is_said_once_it_is_open() {
+    let folder = tempfile::tempdir().expect("there is a disk");
+    let mesh = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nv 9 9 9\nf 1 2 3\nf 5 3 4\nf 1 2 2\n";
+    let scene = "[[body]]\nname = \"sail\"\nmesh = \"odd.obj\"\npins = [3]\ncloth = { density = 0.4, stiffness = 150 }\n";
+    std::fs::write(folder.path().join("odd.obj"), mesh).expect("it is ours");
+    let path = folder.path().join("odd.toml");
+    std::fs::write(&path, scene).expect("it is ours");
+    let mut window = window("chain");
+    open_path(&mut window, &path.display().to_string());
+    assert_eq!(report(&window).opened.name, "odd");
+    window.get_by_label("It is open, but look at this");
+    let said = state(&window).warnings.clone();
+    // The sentences of the command.
+    assert_eq!(said, report(&window).opened.scene.mesh_warnings());
+    assert!(
+        said.len() >= 3 && said.iter().all(|sentence| sentence.starts_with("sail (odd.obj): ")),
+        "{said:?}"
+    );
+    for sentence in &said {
+        window.get_by_label(&format!("{sentence}."));
+    }
+    // Enter closes it, and it does not come back.
+    window.key_press(Key::Enter);
+    window.run_steps(3);
+    assert!(window.query_by_label("It is open, but look at this").is_none());
+    assert_eq!(report(&window).opened.name, "odd");
+    // A scene without any has none.
+    button(&mut window, "scene jelly");
+    assert!(state(&window).warnings.is_empty());
+}
