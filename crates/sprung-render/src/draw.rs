@@ -71,7 +71,7 @@ impl Look {
         let depth = camera.view(centre).z.max(camera.near);
         let crowded = model.point_count() > CROWD || self.spacing * camera.focal / depth < CLOSEST_PIXELS;
         let has_surface = |body| model.surfaces().iter().any(|surface| surface.body == body);
-        let covered = |body| has_surface(body) && (crowded || model.has_carried_skin(body));
+        let covered = |body| has_surface(body) && (crowded || model.is_seen_by_surface(body));
         self.body_in_detail = (0..model.bodies().len()).map(|body| !covered(body)).collect();
         let any_wires = self.wires(model).next().is_some();
         self.any_wires = any_wires;

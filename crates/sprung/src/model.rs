@@ -49,6 +49,9 @@ pub struct Surface {
     pub vertices: SurfaceVertices,
     /// Corners of each triangle: indices into the model's points, or into the list of weighted vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// Whether it is what is meant to be seen of its body, as the artist's mesh is of cloth or of a soft body made from it.
+    /// Points and springs are then drawn where somebody asks for them.
+    pub stands_for_body: bool,
 }
 
 /// What the corners of a surface's triangles are.
@@ -212,11 +215,9 @@ impl Model {
         Cow::Owned(chosen.triangles.iter().map(|corners| corners.map(|corner| first + corner)).collect())
     }
 
-    /// Whether a body has a skin of its own that its points carry along, as a soft body made from a mesh has: the points are
-    /// inside, and the skin is what is meant to be seen.
-    pub fn has_carried_skin(&self, body: usize) -> bool {
-        let mut own = self.surfaces.iter().filter(|surface| surface.body == body);
-        own.any(|surface| surface.kind == SurfaceKind::Skin && !surface.weighted().is_empty())
+    /// Whether a body has a surface that is what is meant to be seen of it: see [`Surface::stands_for_body`].
+    pub fn is_seen_by_surface(&self, body: usize) -> bool {
+        self.surfaces.iter().any(|surface| surface.body == body && surface.stands_for_body)
     }
 
     /// The body called `name`.

@@ -166,7 +166,7 @@ fn is_crowded(body: &Body) -> bool {
 pub fn shown(model: &Model, appearance: &Appearance, body: usize) -> Shown {
     let has_surface = appearance.surfaces != Surfaces::Hidden
         && model.surfaces().iter().any(|surface| surface.body == body);
-    let is_covered = model.bodies().get(body).is_some_and(is_crowded) || model.has_carried_skin(body);
+    let is_covered = model.bodies().get(body).is_some_and(is_crowded) || model.is_seen_by_surface(body);
     let in_detail = !(has_surface && is_covered);
     let points = match appearance.points {
         Points::Auto => in_detail,

@@ -259,7 +259,13 @@ impl ModelBuilder {
         triangles.iter().flatten().try_for_each(|&point| self.check_point(point as usize))?;
         self.ensure_body()?;
         let body = self.bodies.len() - 1;
-        self.surfaces.push(Surface { body, kind, vertices: SurfaceVertices::Points, triangles });
+        self.surfaces.push(Surface {
+            body,
+            kind,
+            vertices: SurfaceVertices::Points,
+            triangles,
+            stands_for_body: false,
+        });
         Ok(())
     }
 
@@ -294,8 +300,21 @@ impl ModelBuilder {
         }
         self.ensure_body()?;
         let body = self.bodies.len() - 1;
-        self.surfaces.push(Surface { body, kind, vertices: SurfaceVertices::Weighted(vertices), triangles });
+        self.surfaces.push(Surface {
+            body,
+            kind,
+            vertices: SurfaceVertices::Weighted(vertices),
+            triangles,
+            stands_for_body: false,
+        });
         Ok(())
+    }
+
+    /// The surface that was added last is what is meant to be seen of its body: see [`Surface::stands_for_body`].
+    pub fn show_surface_alone(&mut self) {
+        if let Some(surface) = self.surfaces.last_mut() {
+            surface.stands_for_body = true;
+        }
     }
 
     /// How many points there are so far.

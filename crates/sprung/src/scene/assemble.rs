@@ -222,7 +222,11 @@ impl<'a> Assembly<'a> {
                 self.builder.add_surface(surface.kind, triangles)
             }
         }
-        .map_err(|error| replaced(error, &format!("{path}.mesh")))
+        .map_err(|error| replaced(error, &format!("{path}.mesh")))?;
+        if surface.stands_for_body {
+            self.builder.show_surface_alone();
+        }
+        Ok(())
     }
 
     fn pin(&mut self, path: &str, body: &Body, points: &Range<usize>, pin: &Pin) -> Result<()> {

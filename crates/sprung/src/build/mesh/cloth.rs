@@ -161,7 +161,12 @@ pub fn cloth(mesh: &Mesh, material: &ClothMaterial) -> Result<MeshBody> {
     let vertices = welded.merged.then(|| welded.point_of.iter().map(|&p| WeightedVertex::on(p)).collect());
     Ok(MeshBody {
         springs: summed(springs, material.damping),
-        surface: Some(MeshSurface { kind: SurfaceKind::Cloth, vertices, triangles: mesh.faces.triangles() }),
+        surface: Some(MeshSurface {
+            kind: SurfaceKind::Cloth,
+            vertices,
+            triangles: mesh.faces.triangles(),
+            stands_for_body: true,
+        }),
         points,
         masses,
         point_of_vertex: welded.point_of,

@@ -196,6 +196,8 @@ pub struct MeshSurface {
     pub vertices: Option<Vec<WeightedVertex>>,
     /// Triangles over the mesh's vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// Whether it is what is meant to be seen of the body; of a net that is its springs.
+    pub stands_for_body: bool,
 }
 
 /// `12 vertices`, `1 vertex`.

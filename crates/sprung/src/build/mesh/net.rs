@@ -57,7 +57,8 @@ pub fn net(mesh: &Mesh, material: &NetMaterial) -> Result<MeshBody> {
         kind = SurfaceKind::Skin;
     }
     let vertices = welded.merged.then(|| welded.point_of.iter().map(|&p| WeightedVertex::on(p)).collect());
-    let surface = (!triangles.is_empty()).then_some(MeshSurface { kind, vertices, triangles });
+    let surface =
+        (!triangles.is_empty()).then_some(MeshSurface { kind, vertices, triangles, stands_for_body: false });
     let spring = |ends| MeshSpring { ends, stiffness: material.stiffness, damping: material.damping };
     Ok(MeshBody {
         points: welded.points,

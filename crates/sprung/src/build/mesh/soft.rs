@@ -100,7 +100,12 @@ pub(crate) fn soft_body_within(mesh: &Mesh, material: &SoftMaterial, most_spring
     Ok(MeshBody {
         masses: filling.masses(material.density, volume),
         springs: filling.springs(material.stiffness, volume, material.damping, most_springs)?,
-        surface: Some(MeshSurface { kind: SurfaceKind::Skin, vertices: Some(vertices), triangles: surface }),
+        surface: Some(MeshSurface {
+            kind: SurfaceKind::Skin,
+            vertices: Some(vertices),
+            triangles: surface,
+            stands_for_body: true,
+        }),
         point_of_vertex,
         points: filling.points,
         warnings,
