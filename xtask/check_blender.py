@@ -38,13 +38,15 @@ def main(folder: Path) -> None:
         x, y, z = np.moveaxis(vectors, -1, 0)
         return np.stack([x, -z, y], axis=-1)
 
-    positions = run_ply.Sequence(folder / "run", turn(archive["positions"]), turn(archive["velocities"])).positions
+    shown = run_ply.Sequence(folder / "run", turn(archive["positions"]), turn(archive["velocities"]))
+    positions = shown.positions
     frames = len(positions)
 
     for ending in (".obj", ".ply"):
         for frame in range(frames):
             thing = opened(folder / f"run.{frame:04}{ending}")
             same(vertices(thing.data), positions[frame], f"frame {frame} of {ending}")
+            run_ply.same_faces([face.vertices for face in thing.data.polygons], shown.faces, f"{frame} of {ending}")
             # The importer's turn is a matrix of the object: this one is none.
             assert np.allclose(thing.matrix_world, np.eye(4), atol=1e-6), thing.matrix_world
 

@@ -42,21 +42,24 @@ def check_mdd(path: Path, expected: np.ndarray, time: np.ndarray) -> None:
     same(np.frombuffer(data[8 + 4 * frames :], ">f4").reshape(expected.shape), expected, path.name)
 
 
-def check_obj(path: Path, expected: np.ndarray, faces: np.ndarray) -> None:
+def check_obj(path: Path, expected: np.ndarray, faces: list[np.ndarray]) -> None:
     mesh = meshio.read(path)
     same(mesh.points, expected, f"{path.name} in meshio")
-    assert (mesh.get_cells_type("triangle") == faces).all(), f"{path.name} in meshio: faces"
+    found = [face for block in mesh.cells if block.type in ("triangle", "quad", "polygon") for face in block.data]
+    run_ply.same_faces(found, faces, f"{path.name} in meshio")
     mesh = trimesh.load(path, process=False, group_material=False, split_object=False, maintain_order=True)
     same(np.asarray(mesh.vertices), expected, f"{path.name} in trimesh")
 
 
-def check_ply(path: Path, expected: np.ndarray, velocities: np.ndarray, faces: np.ndarray, springs: np.ndarray) -> None:
+def check_ply(path: Path, expected: np.ndarray, velocities: np.ndarray, polygons: list, springs: np.ndarray) -> None:
+    faces = run_ply.triangles(polygons)
     mesh = trimesh.load(path, process=False)
     same(np.asarray(mesh.vertices), expected, f"{path.name} in trimesh")
     raw = mesh.metadata["_ply_raw"]
     vertex = raw["vertex"]["data"]
     same(np.stack([vertex[name] for name in ("vx", "vy", "vz")], axis=1), velocities, f"{path.name}: velocities")
-    assert (np.asarray(mesh.faces) == faces).all(), f"{path.name}: faces"
+    # Of a face with four corners this reader makes two triangles, in an order of its own.
+    assert (in_any_order(np.asarray(mesh.faces)) == in_any_order(faces)).all(), f"{path.name}: faces"
     corners = expected.astype(np.float64)[faces]
     normal = np.zeros(expected.shape)
     of_face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -80,6 +83,20 @@ def check_ply(path: Path, expected: np.ndarray, velocities: np.ndarray, faces: n
     reader.SetFileName(str(path))
     reader.Update()
     same(vtk_to_numpy(reader.GetOutput().GetPoints().GetData()), expected, f"{path.name} in VTK")
+    run_ply.same_faces(polygons_of(reader.GetOutput()), polygons, f"{path.name} in VTK")
+
+
+def in_any_order(triangles: np.ndarray) -> np.ndarray:
+    """Each from its smallest corner on, and all of them sorted."""
+    turn = triangles.argmin(axis=1)[:, None] + np.arange(3)
+    turned = np.take_along_axis(triangles, turn % 3, axis=1)
+    return turned[np.lexsort(turned.T)]
+
+
+def polygons_of(data: vtk.vtkPolyData) -> list[np.ndarray]:
+    polys = data.GetPolys()
+    corners, ends = vtk_to_numpy(polys.GetConnectivityArray()), vtk_to_numpy(polys.GetOffsetsArray())
+    return np.split(corners, ends[1:-1])
 
 
 def read_vtp(path: Path) -> vtk.vtkPolyData:
@@ -155,7 +172,6 @@ def main(folder: Path, up: str, scale: float) -> None:
     law = {1000: JELLY, 400: CLOTH}.get(len(archive["mass"]))
     for frame, at in enumerate(time.tolist()):
         surface = read_vtp(folder / listed[at, "surface"])
-        corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         skin = vtk_to_numpy(surface.GetPointData().GetArray("point"))
         # Vertices that are no points are those of the one body there is then, and the first of all.
         place = np.where(skin < 0, np.arange(len(skin)), shown.vertex_of[skin])
@@ -169,7 +185,7 @@ def main(folder: Path, up: str, scale: float) -> None:
             check_springs(points, archive, frame, turn, law)
         else:
             assert points.GetNumberOfVerts() == len(archive["mass"]), "without springs each point is a cell"
-        faces = place[corners]
+        faces = [place[corners] for corners in polygons_of(surface)]
         check_obj(folder / f"run.{frame:04}.obj", shown.positions[frame], faces)
         ply, edges = folder / f"run.{frame:04}.ply", shown.vertex_of[springs]
         check_ply(ply, shown.positions[frame], shown.velocities[frame], faces, edges)

@@ -28,9 +28,14 @@ def sample(attribute, time):
     return np.array(attribute.Get(time))
 
 
+def faces_of(mesh):
+    counts = np.array(mesh.GetFaceVertexCountsAttr().Get())
+    return np.split(np.array(mesh.GetFaceVertexIndicesAttr().Get()), counts.cumsum()[:-1])
+
+
 def check_normals(mesh, points, time, what):
     """Of length one, and the mean of the triangles' around, as far as rounding lets them."""
-    corners = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
+    corners = run_ply.triangles(faces_of(mesh))
     a, b, c = (points[corners[:, k]].astype(np.float64) for k in range(3))
     across = np.cross(b - a, c - a)
     expected = np.zeros(points.shape)
@@ -90,6 +95,10 @@ def check(path, run, archive, title, up, scale, frame_time):
             chosen = np.array(UsdGeom.PrimvarsAPI(prim).GetPrimvar("point").Get())
             assert (np.diff(chosen) > 0).all() and left.issuperset(chosen), f"{prim.GetPath()}: {chosen}"
             left.difference_update(chosen)
+        if prim.IsA(UsdGeom.Mesh) and Path(run).with_suffix(".0000.ply").exists():
+            # There is one mesh then.
+            _, _, faces = run_ply.read(Path(run).with_suffix(".0000.ply"))
+            run_ply.same_faces(faces_of(UsdGeom.Mesh(prim)), faces, f"{path}{prim.GetPath()}")
         for frame in range(frames):
             what = f"{path}{prim.GetPath()} at {frame}"
             found = sample(based.GetPointsAttr(), frame)

@@ -10,8 +10,10 @@ use crate::stages::{fresh_folder, sprung};
 const SCENE: (&str, &str, &str) = ("xtask/readers.toml", "Three \"bodies\" \\ of all kinds", "0.04");
 /// A soft body whose surface is a mesh that its points carry along: vertices that are no points.
 const PEBBLE: &str = "examples/pebble.toml";
-/// Its title.
-const PEBBLE_TITLE: &str = "A pebble of jelly";
+/// Cloth of quads, which leave as such.
+const TOWEL: &str = "examples/towel.toml";
+/// The titles of these two.
+const TITLES: [&str; 2] = ["A pebble of jelly", "A towel on a rail"];
 /// The Python that the system has.
 const SYSTEM: &str = if cfg!(windows) { "python" } else { "python3" };
 /// The Khronos validator, as npm knows it.
@@ -26,7 +28,7 @@ pub fn python() -> Outcome {
     run(program(python, &["xtask/check_outputs.py", &table, &archive]).env("PYTHONDONTWRITEBYTECODE", "1"))
 }
 
-/// Three scenes to every format of geometry, in both axes and with and without springs: other people's readers must find each
+/// Four scenes to every format of geometry, in both axes and with and without springs: other people's readers must find each
 /// vertex where the archive of the same run has it.
 pub fn exports() -> Outcome {
     let python = python_with("venv-exports", SYSTEM, &["numpy", "scipy", "meshio", "trimesh", "vtk"])?;
@@ -37,6 +39,7 @@ pub fn exports() -> Outcome {
         ("jelly", "z", "0.01", "none"),
         (PEBBLE, "y", "1", "lines"),
         (PEBBLE, "z", "100", "none"),
+        (TOWEL, "z", "1", "lines"),
     ] {
         let folder = fresh_folder("exports-check")?;
         let mut command = sprung(&["run", scene, "--frames", "12", "--quiet", "--up", up, "--scale", scale]);
@@ -82,12 +85,14 @@ pub fn usd() -> Outcome {
     run(sprung(&short).args(["--at", "1.0", "-o", &gltf]))?;
     checked("xtask/check_gltf.py", &[&archive, frame_time, "25", &gltf])?;
     valid()?;
-    // A mesh that points carry along is held against the .ply files, which other readers are tried on.
-    for springs in ["none", "lines"] {
+    // A mesh that points carry along is held against the .ply files, which other readers are tried on; so are faces.
+    for (scene, title, springs) in
+        [(PEBBLE, TITLES[0], "none"), (PEBBLE, TITLES[0], "lines"), (TOWEL, TITLES[1], "none")]
+    {
         fresh_folder("usd-check")?;
         let files = outputs(&[&archive, &ply, &crate_file, &text, &package, &gltf]);
-        run(sprung(&pebble(springs)).args(files))?;
-        let usd = [&archive, PEBBLE_TITLE, "Y", "1", frame_time, &crate_file, &text, &package];
+        run(sprung(&from_a_mesh(scene, springs)).args(files))?;
+        let usd = [&archive, title, "Y", "1", frame_time, &crate_file, &text, &package];
         checked("xtask/check_usd.py", &usd)?;
         checked("xtask/check_gltf.py", &[&archive, frame_time, "clip", &gltf])?;
         valid()?;
@@ -95,9 +100,9 @@ pub fn usd() -> Outcome {
     Ok(())
 }
 
-/// The soft body with as many frames a second as [`SCENE`].
-fn pebble(springs: &str) -> [&str; 9] {
-    ["run", PEBBLE, "--fps", "25", "--frames", "20", "--quiet", "--springs", springs]
+/// A body made from a mesh, with as many frames a second as [`SCENE`].
+fn from_a_mesh<'a>(scene: &'a str, springs: &'a str) -> [&'a str; 9] {
+    ["run", scene, "--fps", "25", "--frames", "20", "--quiet", "--springs", springs]
 }
 
 /// Blender itself imports the files and shows every vertex where the archive has it, frame after frame: meshes, caches that move
@@ -111,14 +116,14 @@ pub fn blender() -> Outcome {
         let mut command = program(&python, &[script]);
         run(command.args(arguments).env("PYTHONDONTWRITEBYTECODE", "1"))
     };
-    for scene in ["jelly", "cloth", PEBBLE] {
+    for scene in ["jelly", "cloth", PEBBLE, TOWEL] {
         let folder = fresh_folder("blender-check")?;
         let arguments = ["run", scene, "--fps", "24", "--frames", "24", "--quiet", "--up", "z"];
         run(sprung(&arguments).args(outputs_in(&folder, &["npz", "pc2", "mdd", "obj", "ply"])))?;
         checked("xtask/check_blender.py", &[&folder.display().to_string()])?;
     }
     let bodies = ["run", SCENE.0, "--frames", "40", "--quiet"];
-    for (arguments, more) in [(&bodies[..], &[][..]), (&pebble("none"), &["ply"])] {
+    for (arguments, more) in [(&bodies[..], &[][..]), (&from_a_mesh(PEBBLE, "none"), &["ply"])] {
         let folder = fresh_folder("blender-usd-check")?;
         let endings = ["npz", "usdc", "usda", "usdz", "glb"];
         run(sprung(arguments).args(outputs_in(&folder, &endings)).args(outputs_in(&folder, more)))?;

@@ -56,6 +56,7 @@ impl App {
         driver.send(Command::Play(true));
         let camera = Turntable::framing(&Bounds::default(), 1.0);
         let origin = Origin::of(&report.opened.name, &report.opened.scene);
+        let warnings = report.opened.scene.mesh_warnings();
         let state = AppState {
             driver,
             report,
@@ -78,6 +79,7 @@ impl App {
             files: Files::new(origin),
             kept_link: None,
             refused: Default::default(),
+            warnings,
             notice: None,
             hint: !settings.hint_taken,
             compares: false,
@@ -216,6 +218,7 @@ impl App {
         }
         if self.serial.is_some() {
             self.state.files.opened();
+            self.state.warnings = opened.scene.mesh_warnings();
             self.state.send(Command::Play(true));
         }
         self.serial = Some(opened.serial);

@@ -162,9 +162,7 @@ fn kept(path: &Path) -> Kept {
     let file = path.display().to_string();
     let path = path.to_owned();
     let read = move |options: &Options| {
-        let stored = Stored::open(&path)?;
-        options.check_memory(stored.memory(), "the checkpoint")?;
-        stored.read()
+        Stored::open(&path)?.read(&|needed, what| options.check_memory(needed, what))
     };
     Kept { name, bring: Arc::new(move |options| running(read(options), &file, options)) }
 }
@@ -199,7 +197,7 @@ pub fn read_scene(path: &Path) -> Result<Source, Refused> {
     let bytes =
         sprung_io::files::read_ordinary(path, MAX_BYTES).map_err(|error| Refused { error, text: None })?;
     let mut source = parse_scene(&bytes, &path.display().to_string())?;
-    // What is odd about a mesh is said by the command, which has a place for notes.
+    // What is odd about a mesh is told by a card once the scene is open.
     match sprung_io::import::load_meshes(&mut source.scene, Some(path)) {
         Ok(_) => Ok(source),
         Err(error) => {

@@ -71,7 +71,7 @@ pub fn run(options: Options) -> Result<()> {
 fn fresh_context() -> Option<egui::Context> {
     let stored = eframe::storage_dir(APP_ID)?.join("app.ron");
     // What egui stores has a few KiB; of a file that is much longer nothing is believed.
-    let text = sprung_io::files::read(&stored, 16 << 20).map(|bytes| String::from_utf8(bytes).ok());
+    let text = sprung_io::files::read_ordinary(&stored, 16 << 20).map(|bytes| String::from_utf8(bytes).ok());
     match text {
         Ok(Some(text)) if zooms_are_sane(&text) => None,
         // There is none yet.
@@ -126,12 +126,17 @@ fn create(options: Options, context: &eframe::CreationContext<'_>) -> Result<App
     let settings = Settings::load(context.storage);
     let Options { beginning, path, memory_limit, workers } = options;
     let limits = sprung_driver::Options { memory_limit, workers, ..Default::default() };
+    let is_known = beginning.is_none();
     let (beginning, origin, refused) = first(beginning, path.as_deref(), &settings, &limits)?;
     let repaint = context.egui_ctx.clone();
     let driver = Driver::with(beginning, limits)?;
     let driver = Handle::thread(driver, Box::new(move || repaint.request_repaint()))?;
     let mut app = App::new(driver, context);
     app.state_mut().files.origin = origin;
+    if is_known {
+        // It was said when this scene was opened.
+        app.state_mut().warnings.clear();
+    }
     if let Some(error) = refused {
         app.state_mut().refuse(error);
     }

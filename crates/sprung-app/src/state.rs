@@ -112,6 +112,8 @@ pub struct AppState {
     pub kept_link: Option<String>,
     /// What this window could not do, one after the other, until each is read. The driver has its own in the report.
     pub refused: VecDeque<Refused>,
+    /// What is odd about the meshes of the scene that was opened, a sentence each, until it is read.
+    pub warnings: Vec<String>,
     /// A word that is shown for a moment, such as "saved chain.toml".
     pub notice: Option<String>,
     /// Whether the hint of the first start is still to be shown.

@@ -87,7 +87,7 @@ fn damaged(path: &Path, of: &Path) -> Error {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     std::fs::write(path, bytes).expect("it is ours");
-    Stored::open(path).expect("it is there").read().expect_err("a byte is flipped")
+    Stored::open(path).expect("it is there").read(&|_, _| Ok(())).expect_err("a byte is flipped")
 }
 
 fn refused(window: &Window) -> Option<Error> {
@@ -205,7 +205,7 @@ fn a_checkpoint_is_saved_only_where_it_does_no_harm() {
     let (path, taken) = (file(&folder, "a.sprung"), file(&folder, "taken.sprung"));
     let mut here = under_way("chain");
     save(&mut here, &path);
-    let saved = Stored::open(&path).and_then(|stored| stored.read()).expect("it is whole");
+    let saved = Stored::open(&path).and_then(|stored| stored.read(&|_, _| Ok(()))).expect("it is whole");
     let before = std::fs::read(&path).expect("it is there");
     // It asks first.
     press(&mut here, Action::Checkpoint);
@@ -228,7 +228,7 @@ fn a_checkpoint_is_saved_only_where_it_does_no_harm() {
     here.run_steps(3);
     // Without an ending it gets its own.
     enter(&mut here, &file(&folder, "c"));
-    let stored = Stored::open(&file(&folder, "c.sprung")).and_then(|stored| stored.read());
+    let stored = Stored::open(&file(&folder, "c.sprung")).and_then(|stored| stored.read(&|_, _| Ok(())));
     assert_eq!(stored.expect("it is whole").scene_name, "chain");
     // Meshes are in it: their files are not needed.
     let towel = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towel.toml");
@@ -236,7 +236,7 @@ fn a_checkpoint_is_saved_only_where_it_does_no_harm() {
     enter(&mut here, &towel);
     press(&mut here, Action::Checkpoint);
     enter(&mut here, &file(&folder, "towel.sprung"));
-    let stored = Stored::open(&file(&folder, "towel.sprung")).and_then(|stored| stored.read());
+    let stored = Stored::open(&file(&folder, "towel.sprung")).and_then(|stored| stored.read(&|_, _| Ok(())));
     let scene = stored.and_then(|saved| saved.scene()).expect("it is whole");
     assert!(!scene.waits_for_meshes());
     // And a scene does not go by the name of a checkpoint.

@@ -74,6 +74,7 @@ const CARDS: &[Shot] = &[
         act(window, Action::Checkpoint);
     }),
     Shot::light("card-checkpoint-bad", "chain", |window| drop_file(window, "half.sprung", "\u{89}not one")),
+    Shot::light("card-warnings", "spring", odd_mesh),
     Shot::light("card-replace", "chain", |window| {
         act(window, Action::Save);
         // Any file that is there, and no farther than the question.
@@ -196,6 +197,21 @@ fn pull_a_corner(window: &mut Window) {
 fn bad_file(window: &mut Window) {
     let text = "dt = 0.01\n\n[[body]]\nname = \"a\"\npoints = [[0, 0]]\npoint_mass = 1.0\n";
     drop_file(window, "two-coordinates.toml", text);
+}
+
+/// A mesh with faces too many, too few and too small.
+fn odd_mesh(window: &mut Window) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let mesh =
+        "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 3\nv 0 0 0\nv 9 9 9\nf 1 2 3\nf 1 3 4\nf 6 3 5\nf 1 2 2\n";
+    let scene = "[[body]]\nname = \"sail\"\nmesh = \"odd.obj\"\npins = [3]\ncloth = { density = 0.4, stiffness = 150 }\n";
+    std::fs::write(folder.join("odd.obj"), mesh).expect("it is ours");
+    std::fs::write(folder.join("odd.toml"), scene).expect("it is ours");
+    act(window, Action::Open);
+    enter(window, &folder.join("odd.toml").display().to_string());
+    state(window).send(Command::Play(false));
+    state(window).send(Command::Reset);
+    window.run_steps(3);
 }
 
 fn open_plot(window: &mut Window, kind: PlotKind) {

@@ -6,8 +6,11 @@ use std::time::Duration;
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use sprung_io::checkpoint::MOST_FRAMES;
 use sprung_io::export::geometry::SCALE_RANGE;
 use sprung_render::export::{EXPORTERS, SIZE_RANGE};
+
+use crate::console::grouped;
 
 /// Mass-spring animation: fast, exactly repeatable, and honest about how large a time step may be.
 ///
@@ -109,7 +112,7 @@ pub struct RunArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Record frames 0 to N
-    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "seconds", value_parser = RangedU64ValueParser::<u64>::new().range(0..=MOST_FRAMES))]
     pub frames: Option<u64>,
     /// Record this many simulated seconds, rounded up to whole frames [default: 10]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
@@ -131,7 +134,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Write no frame before this one; the run starts at 0 all the same
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<u64>::new().range(0..=100_000_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<u64>::new().range(0..=MOST_FRAMES))]
     pub from: Option<u64>,
     /// What leaves of the geometry.
     #[command(flatten)]
@@ -139,15 +142,16 @@ pub struct RunArgs {
     /// Say what would be simulated and written, and do neither
     #[arg(long)]
     pub dry_run: bool,
-    /// Save all it takes to go on with the run, its outputs too, into this file every now and then
-    #[arg(long, value_name = "FILE")]
+    /// Save the run into FILE.sprung every now and then, so that --resume can complete it if it is killed
+    #[arg(long, value_name = "FILE.sprung")]
     pub checkpoint: Option<PathBuf>,
-    /// How often: after so much time on the clock, such as 30s, 5m or 1h, or after so many frames, such as 100 [default: 1m]
+    /// How often to save a checkpoint: each time so much time has passed, such as 30s, 5m or 1h, or so many frames were
+    /// recorded, such as 100 [default: 1m]
     #[arg(long, value_name = "TIME|N", allow_negative_numbers = true, value_parser = every)]
     pub every: Option<Every>,
-    /// Complete the run that this checkpoint is of, after it was killed: to the same bytes as if it had not been.
-    /// --seconds or --frames make it longer or shorter
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "set", "output", "fps", "settle", "plot", "at", "size", "from", "up", "scale", "springs", "body", "points", "dry_run", "checkpoint"])]
+    /// Complete a run that was killed, from its checkpoint: scene, outputs and options are in it, and the files become those
+    /// of a run that was never stopped. --seconds or --frames make it longer or shorter
+    #[arg(long, value_name = "FILE.sprung", conflicts_with_all = ["scene", "set", "output", "fps", "settle", "plot", "at", "size", "from", "up", "scale", "springs", "body", "points", "dry_run", "checkpoint"])]
     pub resume: Option<PathBuf>,
     /// Worker threads, the most that are used; the result is the same for any number [default: one for each processor]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
@@ -260,14 +264,15 @@ pub fn every(text: &str) -> Result<Every, String> {
     for (unit, seconds) in units {
         let Some(number) = text.strip_suffix(unit) else { continue };
         let time = finite(number).map_err(|_| told.to_owned())? * seconds;
-        if !(0.0..=1e7).contains(&time) {
-            return Err("it must be at most 10,000,000 s".to_owned());
+        // Kept in a checkpoint as whole milliseconds.
+        if !(0.001..=3.6e6).contains(&time) {
+            return Err("a time must be from 1ms to 1000h, such as 30s".to_owned());
         }
         return Ok(Every::Time(Duration::from_secs_f64(time)));
     }
     match text.parse() {
-        Ok(frames @ 1..=100_000_000) => Ok(Every::Frames(frames)),
-        Ok(_) => Err("it must be from 1 to 100,000,000 frames".to_owned()),
+        Ok(frames @ 1..=MOST_FRAMES) => Ok(Every::Frames(frames)),
+        Ok(_) => Err(format!("a number of frames must be from 1 to {}", grouped(MOST_FRAMES))),
         Err(_) => Err(told.to_owned()),
     }
 }

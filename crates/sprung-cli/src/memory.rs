@@ -14,7 +14,7 @@ pub fn check(needed: u64, what: &str) -> Result<()> {
     let Some(available) = available().filter(|available| needed > *available) else { return Ok(()) };
     let sentence =
         format!("{what} needs about {} of memory, and {} are available", bytes(needed), bytes(available));
-    Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or a smaller radius"))
+    Err(Error::new(Code::TooLarge, sentence))
 }
 
 /// Memory that the machine has to give to this process now, bytes, where the system tells.

@@ -5,19 +5,22 @@ use std::sync::Arc;
 
 use sprung::scene::{self, Scene};
 use sprung::{Code, Error, Inline, Result, Simulation, Workers};
-use sprung_io::checkpoint::{self, Resumed, Saved, Stored};
+use sprung_io::checkpoint::{self, Recording, Resumed, Saved, Stored};
 use sprung_io::{files, import};
 
 use crate::args::SceneArgs;
 use crate::console::note;
 use crate::memory;
 
+/// What a scene is called that came through a pipe.
+const HANDED_OVER: &str = "scene";
+
 /// The scene with its changes, and the name to call it by.
 pub fn scene(args: &SceneArgs) -> Result<(String, Scene)> {
     scene_and_file(args).map(|(name, scene, _)| (name, scene))
 }
 
-/// The same, and the file that it was read from, if it is not built in.
+/// The same, and the file that it was read from, if it is in one: not built in, and not handed over by the shell.
 pub fn scene_and_file(args: &SceneArgs) -> Result<(String, Scene, Option<PathBuf>)> {
     let (name, mut scene, file) = named(&args.scene)?;
     for assignment in &args.set {
@@ -43,6 +46,15 @@ pub struct Begun {
     pub name: String,
     pub scene: Scene,
     pub simulation: Simulation,
+    /// The scene's `substeps`; of a checkpoint those of the run that it is of, which may have had a frame rate of its own.
+    pub steps_per_frame: u64,
+}
+
+impl Begun {
+    fn new(name: String, scene: Scene, simulation: Simulation) -> Self {
+        let steps_per_frame = simulation.params().substeps.into();
+        Self { name, scene, simulation, steps_per_frame }
+    }
 }
 
 /// The simulation of a scene at its start, or of a checkpoint.
@@ -50,7 +62,7 @@ pub fn begun(args: &SceneArgs, threads: Option<usize>) -> Result<Begun> {
     if !is_checkpoint(&args.scene) {
         let (name, scene) = scene(args)?;
         let simulation = simulation(&scene, threads)?;
-        return Ok(Begun { name, scene, simulation });
+        return Ok(Begun::new(name, scene, simulation));
     }
     let (path, saved) = saved(args)?;
     begun_from(path, &saved, threads)
@@ -64,14 +76,7 @@ pub fn saved(args: &SceneArgs) -> Result<(&Path, Saved)> {
         return Err(error.in_file(format!("--set {assignment}")).with_fix("leave it out"));
     }
     let path = Path::new(&args.scene);
-    Ok((path, read(path, &Stored::open(path)?)?))
-}
-
-/// Reads a checkpoint, after asking whether there is memory for it.
-pub fn read(path: &Path, stored: &Stored) -> Result<Saved> {
-    let named = |error: Error| error.in_file(path.display().to_string());
-    memory::check(stored.memory(), "the checkpoint").map_err(named)?;
-    stored.read()
+    Ok((path, Stored::open(path)?.read(&memory::check)?))
 }
 
 /// The simulation that a checkpoint holds, with its scene.
@@ -84,7 +89,11 @@ pub fn begun_from(path: &Path, saved: &Saved, threads: Option<usize>) -> Result<
     let Resumed { scene, mut simulation, .. } = resumed(path, saved)?;
     simulation.keep_history(0);
     simulation.set_workers(workers(threads)?);
-    Ok(Begun { name: saved.scene_name.clone(), scene, simulation })
+    let mut begun = Begun::new(saved.scene_name.clone(), scene, simulation);
+    if let Some(Recording { plan, .. }) = &saved.recording {
+        begun.steps_per_frame = plan.steps_per_frame;
+    }
+    Ok(begun)
 }
 
 fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
@@ -99,9 +108,17 @@ fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
     match Scene::builtin(text) {
         Ok(scene) => Ok((text.to_owned(), scene, None)),
         Err(_) if looks_like_a_file => {
-            let bytes = files::read(path, scene::MAX_BYTES)?;
+            let bytes = files::read_or_take(path, scene::MAX_BYTES)?;
+            let scene = Scene::from_bytes(&bytes, text)?;
+            if files::is_handed_over(path) {
+                // It has no name, and lies in no folder.
+                return Ok((HANDED_OVER.to_owned(), scene, None));
+            }
             let name = path.file_stem().map_or(text.to_owned(), |stem| stem.to_string_lossy().into_owned());
-            Ok((name, Scene::from_bytes(&bytes, text)?, Some(path.to_owned())))
+            Ok((name, scene, Some(path.to_owned())))
+        }
+        Err(error) if text == "-" && cfg!(unix) => {
+            Err(error.with_fix("/dev/stdin is a scene from the standard input"))
         }
         Err(error) if path.with_extension("toml").is_file() => {
             Err(error.with_fix(format!("did you mean {text}.toml?")))
@@ -112,11 +129,17 @@ fn named(text: &str) -> Result<(String, Scene, Option<PathBuf>)> {
 
 /// The simulation of a scene, without a history, after asking whether there is memory for it.
 pub fn simulation(scene: &Scene, threads: Option<usize>) -> Result<Simulation> {
-    memory::check(scene.estimated_bytes(), "the scene")?;
+    check_memory(scene)?;
     let mut simulation = scene.simulation()?;
     simulation.keep_history(0);
     simulation.set_workers(workers(threads)?);
     Ok(simulation)
+}
+
+/// Asks whether there is memory for a scene.
+pub fn check_memory(scene: &Scene) -> Result<()> {
+    let checked = memory::check(scene.estimated_bytes(), "the scene");
+    checked.map_err(|error| error.with_fix("use fewer points or a smaller radius"))
 }
 
 /// Worker threads to lend to the engine: so many, or one for each processor.

@@ -82,6 +82,20 @@ fn scenes_that_would_be_too_large() {
 }
 
 #[test]
+fn a_scene_that_falls_does_not_come_to_rest() {
+    let folder = TempDir::new().unwrap();
+    let point = "[[body]]\nname = \"a\"\npoints = [[0, 0, 0]]\n";
+    std::fs::write(folder.path().join("falls.toml"), point).unwrap();
+    let line = complaint(folder.path(), &["run", "falls.toml", "--settle", "-o", "a.csv"]);
+    assert!(line.starts_with("the scene did not come to rest: after 1000000 steps"), "{line}");
+    // What is advised can be done.
+    assert!(line.ends_with(
+        "; hold every body by a pin or a plane, or leave out --settle and let it rest in a longer run"
+    ));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
 fn files_that_cannot_be_read() {
     let folder = TempDir::new().unwrap();
     assert_eq!(complaint(folder.path(), &["run", "none.toml"]), "none.toml: there is no such file");
@@ -186,6 +200,10 @@ fn bad_arguments() {
         (&["run", "jelly", "--seconds", "0"], &["--seconds", "1e-6"]),
         (&["run", "jelly", "--seconds", "NaN"], &["--seconds", "finite"]),
         (&["run", "jelly", "--seconds", "1e9", "--fps", "1e6"], &["--seconds", "frames"]),
+        (
+            &["run", "spring", "--set", "dt=1e-9", "--fps", "1e-6", "--frames", "100000000", "--dry-run"],
+            &["would take 1e23 steps", "9007199254740992"],
+        ),
         (&["run", "jelly", "--frames", "3", "--seconds", "1"], &["--frames", "--seconds"]),
         (&["run", "jelly", "--threads", "0"], &["--threads"]),
         (&["run", "jelly", "--size", "10"], &["--size", "1280x720"]),

@@ -58,6 +58,41 @@ fn outputs_replace_no_pipe() {
     assert_eq!(names_in(folder.path()), ["a.csv", "b.gif.partial", "c.svg"]);
 }
 
+/// Nobody writes into it, and so nobody waits; what the shell hands over is another matter.
+#[test]
+fn scenes_come_through_no_pipe_but_the_shells() {
+    let folder = TempDir::new().unwrap();
+    assert!(Command::new("mkfifo").arg(folder.path().join("pipe.toml")).status().unwrap().success());
+    for arguments in [&["show", "pipe.toml"][..], &["run", "pipe.toml"], &["bench", "pipe.toml"]] {
+        let said = complaint(folder.path(), arguments);
+        assert_eq!(said, "sprung: pipe.toml: is a pipe or a device, and must be an ordinary file\n");
+    }
+    assert!(complaint(folder.path(), &["show", "/dev/zero"]).contains("is a pipe or a device"));
+    assert!(
+        complaint(folder.path(), &["show", "-"])
+            .ends_with("; /dev/stdin is a scene from the standard input\n")
+    );
+    // A mesh that such a scene names is looked for in the current folder.
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    fs::copy(examples.join("towel.obj"), folder.path().join("towel.obj")).unwrap();
+    let sprung = env!("CARGO_BIN_EXE_sprung");
+    let scene = examples.join("towel.toml");
+    for script in [
+        "cat \"$1\" | \"$0\" show /dev/stdin",
+        "\"$0\" show /dev/stdin < \"$1\"",
+        "exec 3< \"$1\" && \"$0\" show /dev/fd/3",
+        // The writer is gone before the reader comes.
+        "cat \"$1\" > pipe.toml & { wait; \"$0\" show /dev/stdin; } < pipe.toml",
+    ] {
+        let shell =
+            Command::new("sh").current_dir(folder.path()).args(["-c", script, sprung]).arg(&scene).output();
+        let shell = shell.unwrap();
+        let [said, wrong] = [shell.stdout, shell.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        assert!(shell.status.success(), "{script}: {wrong}");
+        assert!(said.starts_with("scene: "), "{script}: {said}");
+    }
+}
+
 /// Puts a program called ffmpeg before all others and runs a film with it; gives what was said.
 fn film_with(folder: &Path, script: &str) -> String {
     use std::os::unix::fs::PermissionsExt;

@@ -369,7 +369,8 @@ impl Driver {
 fn build(beginning: Beginning, serial: u64, options: &Options) -> Result<(Simulation, Arc<Opened>)> {
     let Running { name, scene, params, mut simulation } = match beginning {
         Beginning::Scene(Source { name, scene }) => {
-            options.check_memory(scene.estimated_bytes(), &name)?;
+            let needed = options.check_memory(scene.estimated_bytes(), &name);
+            needed.map_err(|error| error.with_fix("use fewer points or springs"))?;
             let simulation = scene.simulation()?;
             Running { params: Arc::new(simulation.params().clone()), name, scene, simulation }
         }

@@ -44,7 +44,7 @@ impl Options {
         let mib = |bytes: u64| bytes.div_ceil(1 << 20);
         let sentence =
             format!("{what} needs about {} MiB of memory, and there are {} MiB", mib(needed), mib(limit));
-        Err(Error::new(Code::TooLarge, sentence).with_fix("use fewer points or springs"))
+        Err(Error::new(Code::TooLarge, sentence))
     }
 }
 

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use sprung::build::Mesh;
 use sprung::scene::Scene;
-use sprung::{Checkpoint, Code, Error, Model, Params, Result, Simulation};
+use sprung::{Checkpoint, Code, Error, MOST_STEPS, Model, Params, Result, Simulation};
 
 use crate::export::{Mark, Options};
 
@@ -30,8 +30,11 @@ pub use keeper::{Keeper, Stored};
 /// The ending of the names of checkpoints, without the dot.
 pub const ENDING: &str = "sprung";
 
-/// The newest version of the format, which is the one that is written.
-pub const VERSION: u32 = 2;
+/// The number of the last frame of a run, at most.
+pub const MOST_FRAMES: u64 = 100_000_000;
+
+/// The version of the format, of which there is one so far.
+pub const VERSION: u32 = 1;
 
 /// Whether a file of this name is a checkpoint.
 pub fn is_name(path: &Path) -> bool {
@@ -108,6 +111,20 @@ pub struct Plan {
     pub ended: Option<String>,
 }
 
+impl Recording {
+    /// Whether its numbers fit each other.
+    fn is_sound(&self) -> bool {
+        let Plan { outputs, plot, steps_per_frame, last_frame, recorded, from, .. } = &self.plan;
+        let steps = steps_per_frame.checked_mul(*last_frame);
+        self.marks.len() == outputs.len() + usize::from(plot.is_some())
+            && *steps_per_frame > 0
+            && steps.is_some_and(|steps| steps <= MOST_STEPS)
+            && *last_frame <= MOST_FRAMES
+            && (1..=last_frame + 1).contains(recorded)
+            && from <= last_frame
+    }
+}
+
 /// A simulation that was taken up again.
 #[derive(Clone)]
 pub struct Resumed {
@@ -117,6 +134,15 @@ pub struct Resumed {
     pub params: Params,
     /// The simulation.
     pub simulation: Simulation,
+}
+
+/// Asked before memory is taken: how many bytes, for what. Refuses if there are not so many.
+pub type AskMemory<'a> = dyn Fn(u64, &str) -> Result<()> + 'a;
+
+/// Asks for memory. A checkpoint is as large as it is: what helps is not what helps a scene.
+fn ask(ask: &AskMemory<'_>, bytes: u64, what: &str) -> Result<()> {
+    let fix = "free some, or go on with it on a machine that has more";
+    ask(bytes, what).map_err(|error| error.with_fix(fix))
 }
 
 impl Saved {
@@ -179,14 +205,14 @@ impl Saved {
         Simulation::resume_from(model, self.checkpoint.clone())
     }
 
-    /// Builds the scene and goes on with the simulation. `check` is asked before memory is taken: how many bytes, for what.
+    /// Builds the scene and goes on with the simulation.
     ///
     /// # Errors
-    /// Those of `check`, of [`scene`](Self::scene) and of [`simulation`](Self::simulation), in one sentence about the file.
-    pub fn resume(&self, check: &dyn Fn(u64, &str) -> Result<()>) -> Result<Resumed> {
+    /// Those of `memory`, of [`scene`](Self::scene) and of [`simulation`](Self::simulation), in one sentence about the file.
+    pub fn resume(&self, memory: &AskMemory<'_>) -> Result<Resumed> {
         let resumed = || -> Result<Resumed> {
             let scene = self.scene()?;
-            check(scene.estimated_bytes(), "the scene in it")?;
+            ask(memory, scene.estimated_bytes(), "the scene in it")?;
             let (model, params, _) = scene.build()?;
             Ok(Resumed { simulation: self.simulation(model)?, scene, params })
         };

@@ -3,6 +3,7 @@
 #[cfg(any(test, target_arch = "wasm32"))]
 #[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "its tests run on every system"))]
 pub mod memory;
+mod reading;
 mod resume;
 #[cfg(not(target_arch = "wasm32"))]
 mod system;
@@ -20,6 +21,7 @@ use system as disk;
 
 pub use disk::{File, disk_of, place_of, remove_beside, room_beside};
 use disk::{open_locked, target_of};
+pub use reading::{is_handed_over, open_ordinary, read_error, read_or_take, read_ordinary};
 pub use resume::{has_no_partial, is_complete, remove_spools};
 
 /// Bytes gathered before they are handed to the system.
@@ -371,66 +373,12 @@ pub fn spool() -> io::Result<File> {
     disk::temporary(None)
 }
 
-/// Reads a file of at most `most` bytes; a larger one is refused unread.
-///
-/// # Errors
-/// [`Code::Unreadable`] or [`Code::TooLarge`], naming the file.
-pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let failed = |error: io::Error| read_error(path, &error);
-    let file = disk::open(path).map_err(failed)?;
-    // One byte beyond the limit tells that there is more, also where no length is known beforehand, as of a pipe.
-    let mut bytes = Vec::new();
-    file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > most {
-        let sentence = format!("is larger than the {} MiB allowed", most >> 20);
-        return Err(Error::new(Code::TooLarge, sentence).in_file(path.display().to_string()));
-    }
-    Ok(bytes)
-}
-
-/// As [`read`], of an ordinary file only: a pipe or a device could keep a window waiting for ever.
-///
-/// # Errors
-/// As [`read`].
-pub fn read_ordinary(path: &Path, most: u64) -> Result<Vec<u8>> {
-    check_ordinary(path)?;
-    read(path, most)
-}
-
-/// Opens an ordinary file to read it.
-///
-/// # Errors
-/// [`Code::Unreadable`], naming the file.
-pub fn open_ordinary(path: &Path) -> Result<File> {
-    check_ordinary(path)?;
-    disk::open(path).map_err(|error| read_error(path, &error))
-}
-
-fn check_ordinary(path: &Path) -> Result<()> {
-    if disk::is_odd(path) {
-        let error = Error::new(Code::Unreadable, "is a pipe or a device, and must be an ordinary file");
-        return Err(error.in_file(path.display().to_string()));
-    }
-    Ok(())
-}
-
 /// Opens a checkpoint and keeps other runs from it.
 pub(crate) fn hold(path: &Path) -> Result<File> {
     open_locked(&target_of(path)?, Opening::ToRead).map_err(|error| match error.kind() {
         io::ErrorKind::WouldBlock => crate::checkpoint::taken(path),
         _ => read_error(path, &error),
     })
-}
-
-/// The sentence for a file that cannot be read.
-pub fn read_error(path: &Path, error: &io::Error) -> Error {
-    let reason = match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::PermissionDenied => "cannot be read: permission denied".to_owned(),
-        io::ErrorKind::IsADirectory => "is a folder, and must be a file".to_owned(),
-        _ => format!("cannot be read: {error}"),
-    };
-    Error::new(Code::Unreadable, reason).in_file(path.display().to_string())
 }
 
 /// The sentence for a file that cannot be written.

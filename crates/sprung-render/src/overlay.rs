@@ -132,7 +132,9 @@ pub fn free_area(info: &RunInfo, size: [u32; 2]) -> (Vec2, Vec2) {
 
 /// The parameters, each as a short phrase.
 fn facts(info: &RunInfo, grid: Option<f32>) -> Vec<String> {
-    let Params { dt, substeps, planes, .. } = &info.params;
+    let Params { dt, planes, .. } = &info.params;
+    // As many as there are from one frame to the next: a run with a frame rate of its own has other ones than the scene.
+    let substeps = (info.frame_time / dt).round() as usize;
     let plural = |count: usize, thing: &str| {
         format!("{} {thing}{}", text::count(count), if count == 1 { "" } else { "s" })
     };
@@ -140,7 +142,7 @@ fn facts(info: &RunInfo, grid: Option<f32>) -> Vec<String> {
         plural(info.model.point_count(), "point"),
         plural(info.model.spring_count(), "spring"),
         format!("dt = {} s", number(*dt)),
-        plural(*substeps as usize, "substep"),
+        plural(substeps, "substep"),
     ];
     facts.extend(range(&info.params.spring_stiffness).map(|value| format!("k_s = {value} N/m")));
     facts.extend(range(&info.params.spring_damping).map(|value| format!("k_d = {value} N·s/m")));
@@ -190,6 +192,16 @@ mod tests {
         let lines = wrap(&phrases, 12.0, 220.0);
         assert!(lines.len() > 1 && lines.len() < 12);
         assert!(lines.iter().all(|line| text::width(line, 12.0) <= 220.0));
+    }
+
+    #[test]
+    fn steps_from_frame_to_frame_are_those_of_the_run() {
+        let (model, params, _) =
+            sprung::scene::Scene::builtin("spring").and_then(|scene| scene.build()).expect("it is built in");
+        let params = Params { dt: 1.0 / 120.0, substeps: 7, ..params };
+        let (scene, title, model) = ("spring".to_owned(), "A spring".to_owned(), model.into());
+        let info = RunInfo { scene, title, model, params, frame_time: 1.0 / 24.0, frames: 49 };
+        assert_eq!(facts(&info, None)[3], "5 substeps");
     }
 
     #[test]

@@ -49,12 +49,12 @@ pub struct Surface {
     pub vertices: SurfaceVertices,
     /// Corners of each triangle: indices into the model's points, or into the list of weighted vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// Whether it is what is meant to be seen of its body, as the artist's mesh is of cloth or of a soft body made from it.
-    /// Points and springs are then drawn where somebody asks for them.
-    pub stands_for_body: bool,
     /// How many triangles each face of an artist's mesh is, in order: they are a fan around its first corner. Empty where
     /// every triangle is a face of its own.
     pub fans: Vec<u32>,
+    /// Whether it is what is meant to be seen of its body, as the artist's mesh is of cloth or of a soft body made from it.
+    /// Points and springs are then drawn where somebody asks for them.
+    pub stands_for_body: bool,
 }
 
 /// What the corners of a surface's triangles are.

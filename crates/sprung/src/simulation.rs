@@ -1,6 +1,9 @@
 //! The simulation: model, parameters, state and solver bundled.
 
+mod beginning;
+mod changing;
 mod checkpoint;
+mod settling;
 
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
@@ -8,26 +11,19 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::current::Current;
-use crate::energy::{self, Drives, Energy, Ledger, LedgerSums};
+use crate::energy::{Drives, Energy, Ledger};
 use crate::error::{Code, Error, Result};
-use crate::history::{self, DEFAULT_HISTORY_BYTES, Event, History, Past};
-use crate::math::{without_negligible, without_subnormals};
+use crate::history::{Event, History, Past};
 use crate::model::Model;
-use crate::params::{Change, Params, check_vectors};
-use crate::settle::{SettleOptions, Settled};
-use crate::solver::SymplecticEuler;
+use crate::params::{Change, Params};
 use crate::stability::{self, Limit};
 use crate::state::{Snapshot, State};
 use crate::watch::{self, Watch};
-use crate::workers::{Inline, Workers};
+use crate::workers::Workers;
 
+pub use beginning::MOST_STEPS;
+use changing::Placed;
 pub use checkpoint::Checkpoint;
-
-/// The step that a state may be at when a run begins: whole numbers up to here are exact in float64.
-const MOST_STEPS: u64 = 1 << 53;
-
-/// Steps between two calls of the progress of settling.
-const STEPS_TO_PROGRESS: u64 = 64;
 
 /// Model, parameters, state and solver bundled: step, frame, settle, change a parameter, rewind, reset, snapshot.
 ///
@@ -74,72 +70,7 @@ pub struct Simulation {
     placed: Option<Placed>,
 }
 
-/// How it was before something was put in place. A hand that moves a point about while time stands still places it over
-/// and over, as a slider does with parameters; each time that begins from how it was at first, so that the last place alone
-/// counts, to the bit: the log keeps no other.
-#[derive(Clone)]
-enum Placed {
-    /// A point.
-    Point { point: usize, position: [Vec3; 2], velocity: [Vec3; 2], work_in: f64 },
-    /// Parameters, by this change: it may have stopped points, and the clock.
-    Params(Change, Arc<Past>),
-}
-
 impl Simulation {
-    /// Begins a run: a model, its parameters and a state to start from. Velocities of fixed points become zero, and the
-    /// ledger starts here.
-    ///
-    /// # Errors
-    /// [`Code::OutOfRange`] or [`Code::Conflict`] if a value is not allowed or the parts do not fit together.
-    pub fn new(model: impl Into<Arc<Model>>, params: Params, mut state: State) -> Result<Self> {
-        let model = model.into();
-        params.validate(&model)?;
-        check_state(&model, &state)?;
-        hold_fixed_points(&params, &mut state);
-        state.ledger = LedgerSums::default();
-        let mut current = load(&model, &params, state);
-        current.counters().ledger.start = current.energy(&params, &Inline).total();
-        current.keep();
-        Ok(Self::begin(model, params, current))
-    }
-
-    /// Goes on with a run from the parameters and the state that another simulation had: bit for bit as it would have gone
-    /// on there, its ledger and its watch over the energy too.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn resume(model: impl Into<Arc<Model>>, params: Params, mut state: State) -> Result<Self> {
-        let model = model.into();
-        params.validate(&model)?;
-        check_state(&model, &state)?;
-        hold_fixed_points(&params, &mut state);
-        let current = load(&model, &params, state);
-        Ok(Self::begin(model, params, current))
-    }
-
-    /// Goes on from what has been checked.
-    fn begin(model: Arc<Model>, params: impl Into<Arc<Params>>, current: Current) -> Self {
-        let params = params.into();
-        let start = Arc::new(Past { state: current.copied(), params: params.clone() });
-        Self {
-            workers: Arc::new(Inline),
-            watch: Watch::new(&params),
-            current,
-            history: History::new(start.clone(), DEFAULT_HISTORY_BYTES),
-            start,
-            packed: None,
-            history_budget: DEFAULT_HISTORY_BYTES,
-            drives: Drives::default(),
-            ledger: None,
-            snapshot: Snapshot::default(),
-            forces: Vec::new(),
-            every_configuration: None,
-            placed: None,
-            model,
-            params,
-        }
-    }
-
     /// One step of length `dt` (s). A `dt` other than [`Params::dt`] is a [`Change::Dt`] first.
     ///
     /// # Errors
@@ -183,43 +114,6 @@ impl Simulation {
     /// As [`steps`](Self::steps).
     pub fn frame(&mut self) -> Result<()> {
         self.steps(u64::from(self.params.substeps))
-    }
-
-    /// Brings the scene to rest by kinetic damping (Cundall 1976): it steps on, sets all velocities to zero whenever the
-    /// kinetic energy has passed a peak, and stops when no force beyond the residual remains. Neither step nor time go on.
-    ///
-    /// # Errors
-    /// [`Code::NotSettled`] after too many steps, [`Code::BlewUp`] if it blows up; the state is then as before.
-    pub fn settle(&mut self, options: SettleOptions) -> Result<Settled> {
-        self.settle_with(options, &mut |_| ControlFlow::Continue(()))
-    }
-
-    /// As [`settle`](Self::settle); `progress` hears every 64 steps how far it is and may break off.
-    ///
-    /// # Errors
-    /// As [`settle`](Self::settle), and [`Code::Interrupted`] if `progress` broke off.
-    pub fn settle_with(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-    ) -> Result<Settled> {
-        let events = self.history.events_at(self.current.step()).len();
-        let settled = self.settle_unlogged(options, progress, events)?;
-        self.history.branch_at(self.current.step());
-        self.history.record(self.current.step(), Event::Settle(options));
-        Ok(settled)
-    }
-
-    /// Changes a parameter from this step on. The same one changed over and over between two steps has been changed once: to
-    /// the last value, from what was before the first.
-    ///
-    /// # Errors
-    /// [`Code::OutOfRange`], and then nothing has changed.
-    pub fn change(&mut self, change: Change) -> Result<()> {
-        self.change_unlogged(&change)?;
-        self.history.branch_at(self.current.step());
-        self.history.record(self.current.step(), Event::Change(change));
-        Ok(())
     }
 
     /// Goes to any step between the first and the newest, bit for bit, by replay from a checkpoint or from where it is.
@@ -360,7 +254,7 @@ impl Simulation {
     }
 
     /// Sets the memory for checkpoints and log, bytes, and starts both anew from the current state, the earliest that can
-    /// then be rewound to. Zero keeps no checkpoint but that. Pasts lie close together in the recent past and ever
+    /// then be rewound to. Zero keeps no checkpoint but that. Checkpoints lie close together in the recent past and ever
     /// further apart before it; every step can be gone to, but one that is long past takes longer. The log is kept whole:
     /// checkpoints make room for it, down to a quarter of this memory.
     pub fn keep_history(&mut self, bytes: usize) {
@@ -470,150 +364,11 @@ impl Simulation {
         finite
     }
 
-    fn change_unlogged(&mut self, change: &Change) -> Result<()> {
-        if let Change::Carry(point, _) | Change::Place(point, _) = change {
-            return self.move_point(*point, change);
-        }
-        let mut wanted = Params::clone(&self.params);
-        wanted.apply(&self.model, change)?;
-        let placed = self.placed.take();
-        if moves_energy(change) {
-            // A value that is set twice between two steps was set once, from how it was before the first time.
-            let first = match placed {
-                Some(Placed::Params(last, first)) if history::replaces(change, &last) => {
-                    let Past { state, params } = Past::clone(&first);
-                    *self.current.state_mut() = state;
-                    self.set_params(params);
-                    first
-                }
-                _ => {
-                    let (state, params) = (self.current.state().clone(), self.params.clone());
-                    Arc::new(Past { state, params })
-                }
-            };
-            self.placed = Some(Placed::Params(change.clone(), first));
-        }
-        let before = if moves_energy(change) { Some(self.energy().total()) } else { None };
-        let old = self.set_params(Arc::new(wanted));
-        if self.params.dt != old.dt {
-            self.current.counters().restart_clock();
-        }
-        if matches!(change, Change::Mass(..) | Change::Pin(..) | Change::Params(_)) {
-            hold_fixed_points(&self.params, self.current.state_mut());
-        }
-        if let Some(before) = before {
-            // What a change adds to the energy is work put in, not energy from nowhere.
-            let work_in = self.energy().total() - before;
-            self.current.counters().ledger.work_in += work_in;
-        }
-        Ok(())
-    }
-
-    /// Carries, lets go or places one point: many times a second, so only what this point can alter is looked at.
-    fn move_point(&mut self, point: usize, change: &Change) -> Result<()> {
-        let old = self.params.clone();
-        Arc::make_mut(&mut self.params).apply(&self.model, change)?;
-        let earlier = self.placed.take();
-        let state = self.current.state_mut();
-        if let (Change::Place(..), Some(placed)) = (change, earlier) {
-            placed.take_back(point, state);
-        }
-        let before = energy::around(&self.model, &old, state, point);
-        if let Change::Place(_, position) = change {
-            self.placed = Some(Placed::point(point, state));
-            state.position[point] = without_negligible(*position);
-            state.position_low[point] = Vec3::ZERO;
-            state.velocity[point] = Vec3::ZERO;
-            state.velocity_low[point] = Vec3::ZERO;
-        }
-        // The hand takes the point's own energy over, or gives it some.
-        hold(&self.params, state, point);
-        state.ledger.work_in += energy::around(&self.model, &self.params, state, point) - before;
-        // If other changes are still to be packed, this will be with them.
-        if self.packed.is_none() {
-            self.current.unpacked().refresh_point(&self.params, point);
-        }
-        Ok(())
-    }
-
-    /// Takes other parameters, and gives the old ones back.
-    fn set_params(&mut self, params: Arc<Params>) -> Arc<Params> {
-        let old = std::mem::replace(&mut self.params, params);
-        self.packed.get_or_insert_with(|| old.clone());
-        old
-    }
-
     /// Packs anew what has changed: once before the next step, however many changes there were.
     fn refresh_solver(&mut self) {
         if let Some(packed) = self.packed.take() {
             self.current.unpacked().refresh(&packed, &self.params);
         }
-    }
-
-    /// Settles as the next event after so many others at the current step.
-    fn settle_unlogged(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-        events: usize,
-    ) -> Result<Settled> {
-        let before = self.current.copied();
-        let energy_before = self.energy().total();
-        let settled = self.relax(options, progress);
-        let state = self.current.state_mut();
-        if settled.is_err() {
-            *state = before;
-            return settled;
-        }
-        self.placed = None;
-        hold_fixed_points(&self.params, state);
-        // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
-        (state.step, state.time, state.clock) = (before.step, before.time, before.clock);
-        state.ledger = before.ledger;
-        state.ledger.suspect_steps = 0;
-        let energy = self.energy().total();
-        self.current.counters().ledger.work_in += energy - energy_before;
-        self.watch.restart(&mut self.current, &self.params, events + 1);
-        settled
-    }
-
-    fn relax(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-    ) -> Result<Settled> {
-        self.refresh_solver();
-        let allowed = options.residual_force.unwrap_or_else(|| default_residual(&self.params));
-        let mut kinetic_before = 0.0;
-        self.current.stop();
-        let mut residual_force = self.current.solver().residual_force(&self.params);
-        for steps in 0..=options.max_steps {
-            if residual_force <= allowed {
-                return Ok(Settled { steps, residual_force });
-            }
-            if !self.current.advance(&self.params, 1, &*self.workers) {
-                let blow_up = watch::not_finite(&self.model, &self.params, &self.current);
-                return Err(Error::from_blow_up(blow_up));
-            }
-            let kinetic = self.current.kinetic_energy(&*self.workers);
-            if kinetic < kinetic_before {
-                self.current.stop();
-                residual_force = self.current.solver().residual_force(&self.params);
-                kinetic_before = 0.0;
-            } else {
-                kinetic_before = kinetic;
-            }
-            let is_told = steps.is_multiple_of(STEPS_TO_PROGRESS);
-            if is_told && progress(Settled { steps, residual_force }).is_break() {
-                return Err(Error::new(Code::Interrupted, "settling was interrupted"));
-            }
-        }
-        let sentence = format!(
-            "the scene did not come to rest: after {} steps a force of {residual_force:.3e} N remains, over the {allowed:.3e} N \
-             allowed",
-            options.max_steps
-        );
-        Err(Error::new(Code::NotSettled, sentence).with_fix("allow a larger residual force or more steps"))
     }
 
     /// Goes to a good state, that after so many of the events logged for its step.
@@ -644,118 +399,5 @@ impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (points, springs) = (self.model.point_count(), self.model.spring_count());
         write!(f, "Simulation({points} points, {springs} springs, step {})", self.current.step())
-    }
-}
-
-/// Whether a change can alter the energy of the current state.
-fn moves_energy(change: &Change) -> bool {
-    use Change::{Cut, Gravity, Mass, Params, Pin, Planes, RestScale, Stiffness};
-    matches!(
-        change,
-        Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..) | Params(_)
-    )
-}
-
-/// A thousandth of the largest weight, N.
-fn default_residual(params: &Params) -> f64 {
-    let largest = params.point_mass.iter().fold(0.0f32, |max, &mass| max.max(mass));
-    let weight = f64::from(largest) * params.gravity.as_dvec3().length();
-    if weight > 0.0 { 1e-3 * weight } else { 1e-3 }
-}
-
-/// A state with a solver for it, the first one to be kept.
-fn load(model: &Arc<Model>, params: &Params, mut state: State) -> Current {
-    state.drop_subnormals();
-    state.check_clock(params.dt);
-    Current::new(SymplecticEuler::new(model.clone(), params), state)
-}
-
-/// Points that no force can move stand still, or move as the hand does that carries them.
-fn hold_fixed_points(params: &Params, state: &mut State) {
-    (0..state.velocity.len()).for_each(|point| hold(params, state, point));
-}
-
-fn hold(params: &Params, state: &mut State, point: usize) {
-    if params.is_fixed(point) {
-        let carried = params.carried.get(&point).copied().unwrap_or_default();
-        state.velocity[point] = without_subnormals(carried);
-        state.velocity_low[point] = Vec3::ZERO;
-    }
-}
-
-impl Placed {
-    fn point(point: usize, state: &State) -> Self {
-        Self::Point {
-            point,
-            position: [state.position[point], state.position_low[point]],
-            velocity: [state.velocity[point], state.velocity_low[point]],
-            work_in: state.ledger.work_in,
-        }
-    }
-
-    /// If it was this point that was placed, that has not happened.
-    fn take_back(self, this: usize, state: &mut State) {
-        if let Self::Point { point, position, velocity, work_in } = self
-            && point == this
-        {
-            [state.position[point], state.position_low[point]] = position;
-            [state.velocity[point], state.velocity_low[point]] = velocity;
-            state.ledger.work_in = work_in;
-        }
-    }
-}
-
-fn check_state(model: &Model, state: &State) -> Result<()> {
-    check_lengths(model, state)?;
-    for (field, vectors) in vectors(state) {
-        check_vectors(field, vectors)?;
-    }
-    check_counters(state)
-}
-
-fn vectors(state: &State) -> [(&'static str, &Vec<Vec3>); 4] {
-    [
-        ("position", &state.position),
-        ("position_low", &state.position_low),
-        ("velocity", &state.velocity),
-        ("velocity_low", &state.velocity_low),
-    ]
-}
-
-/// There is an entry for each point.
-fn check_lengths(model: &Model, state: &State) -> Result<()> {
-    match vectors(state).into_iter().find(|(_, vectors)| vectors.len() != model.point_count()) {
-        None => Ok(()),
-        Some((field, vectors)) => {
-            let sentence =
-                format!("has {} entries, and the model has {} points", vectors.len(), model.point_count());
-            Err(Error::new(Code::Conflict, sentence).at_field(field))
-        }
-    }
-}
-
-/// Time and sums are numbers, and counts are not beyond what can be counted with.
-fn check_counters(state: &State) -> Result<()> {
-    let LedgerSums { start, work_in, lost_in_dampers, lost_in_contact, integrator_error, suspect_steps } =
-        state.ledger;
-    let numbers = [
-        ("time", state.time),
-        ("ledger.start", start),
-        ("ledger.work_in", work_in),
-        ("ledger.lost_in_dampers", lost_in_dampers),
-        ("ledger.lost_in_contact", lost_in_contact),
-        ("ledger.integrator_error", integrator_error),
-    ];
-    if let Some((field, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
-        let sentence = format!("is {value}, and must be a finite number");
-        return Err(Error::new(Code::OutOfRange, sentence).at_field(field));
-    }
-    let counts = [("step", state.step), ("ledger.suspect_steps", suspect_steps)];
-    match counts.into_iter().find(|(_, count)| *count > MOST_STEPS) {
-        None => Ok(()),
-        Some((field, count)) => {
-            let sentence = format!("is {count}, and must be at most {MOST_STEPS}");
-            Err(Error::new(Code::OutOfRange, sentence).at_field(field))
-        }
     }
 }

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use sprung::build::Mesh;
-use sprung::build::mesh::MeshGroup;
+use sprung::build::mesh::{Faces, MeshGroup};
 use sprung::scene::Scene;
-use sprung::{Change, DVec3, Result, SettleOptions, Simulation, Vec3};
+use sprung::{Change, Code, DVec3, ModelBuilder, Result, SettleOptions, Simulation, SurfaceKind, Vec3};
 
 /// A square sheet from (0, 0, 0) to (1, −1, 0), `side` × `side` squares of two triangles each, the diagonals turned about in
 /// the manner of a chequerboard. Its top row is the group "top".
@@ -278,4 +278,32 @@ fn a_density_besides_masses_is_refused() {
     let text = "[[body]]\nname = \"towel\"\nmesh = \"m\"\npoint_mass = 2\ncloth = { stiffness = 150 }\n";
     let (_, params, _) = loaded(text, &sheet(2)).unwrap().build().unwrap();
     assert!(params.point_mass.iter().all(|&mass| mass == 2.0));
+}
+
+#[test]
+fn triangles_make_faces_only_as_fans() {
+    let mut faces = Faces::default();
+    [&[0, 1, 4][..], &[1, 2, 3, 4], &[4, 3, 5, 6, 0]].into_iter().for_each(|face| faces.push(face));
+    assert_eq!(faces.fans(), [1, 2, 3]);
+    let joined = |triangles: &[[u32; 3]], fans: &[u32]| {
+        let mut builder = ModelBuilder::new();
+        for x in 0..7u8 {
+            builder.add_point(Vec3::X * f32::from(x), 1.0).unwrap();
+        }
+        builder.add_surface(SurfaceKind::Cloth, triangles.to_vec()).unwrap();
+        builder.join_into_faces(fans.to_vec())?;
+        let (model, ..) = builder.build()?;
+        assert_eq!(model.surfaces()[0].fans, fans);
+        Ok(())
+    };
+    let triangles = faces.triangles();
+    for fans in [&[1, 2, 3][..], &[1; 6], &[]] {
+        joined(&triangles, fans).unwrap();
+    }
+    // Too few, too many, none at all, and triangles that do not follow each other around a corner.
+    for fans in [&[1, 2][..], &[1, 2, 3, 1], &[1, 2, 4], &[0, 1, 2, 3], &[2, 1, 3], &[1, 3, 2], &[u32::MAX]] {
+        let error: sprung::Error = joined(&triangles, fans).unwrap_err();
+        assert_eq!(error.code(), Code::Conflict, "{fans:?}: {error}");
+    }
+    assert!(ModelBuilder::new().join_into_faces(vec![1]).is_err());
 }

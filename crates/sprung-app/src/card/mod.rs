@@ -5,6 +5,7 @@ mod error;
 mod file;
 mod help;
 mod hint;
+mod warnings;
 
 pub use help::GESTURES;
 
@@ -64,6 +65,11 @@ impl Cards {
                         state.send(Command::Dismiss);
                     }
                 }
+            }
+        } else if !state.warnings.is_empty() {
+            self.open = Some(warnings::TITLE);
+            if warnings::show(context, &state.warnings) {
+                state.warnings.clear();
             }
         } else if state.shown.help {
             self.open = Some(help::TITLE);

@@ -90,7 +90,7 @@ fn measure(scene: &str, threads: usize) -> Result<Figures> {
     let args = SceneArgs { scene: scene.to_owned(), set: Vec::new() };
     let begun = Instant::now();
     let (name, scene) = source::scene(&args)?;
-    memory::check(scene.estimated_bytes(), "the scene")?;
+    source::check_memory(&scene)?;
     let (model, params, mut state) = scene.build()?;
     let (points, springs) = (model.point_count(), model.spring_count());
     // Points that cannot move lose it again when the simulation is made.

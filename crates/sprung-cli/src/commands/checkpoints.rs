@@ -13,8 +13,8 @@ use sprung_io::{Options, RunInfo};
 use super::record::Recorder;
 use super::run::Plan;
 use crate::args::{Every, RunArgs};
-use crate::console::{complain, note};
-use crate::source;
+use crate::console::{complain, grouped, note};
+use crate::memory;
 
 /// How often a checkpoint is taken when nothing is said: what a kill may cost at most.
 const EVERY: Every = Every::Time(Duration::from_secs(60));
@@ -164,21 +164,27 @@ fn refuse_if_unfinished(path: &Path, keeper: &Keeper) -> Result<()> {
     let Some(stored) = keeper.stored()? else { return Ok(()) };
     let name = path.display();
     // Something else of this name is not ours to write over either.
-    let saved = source::read(path, &stored).map_err(|error| {
+    let saved = stored.read(&memory::check).map_err(|error| {
         let error = Error::new(error.code(), format!("is there already, and {}", error.sentence()));
         error.in_file(name.to_string()).with_fix("give another name, or remove it")
     })?;
     match saved.recording {
         Some(Recording { plan, .. }) if plan.ended.is_none() => {
-            let sentence = format!(
-                "holds a run that was stopped after {} of {} frames and can be completed",
-                plan.recorded,
-                plan.last_frame + 1
-            );
+            let there = recorded_of(plan.recorded, plan.last_frame);
+            let sentence = format!("holds a run, with {there}, that was stopped and can be completed");
             let fix = format!("`sprung run --resume {name}` does that; to give it up, remove {name}");
             Err(Error::new(Code::Conflict, sentence).in_file(name.to_string()).with_fix(fix))
         }
         _ => Ok(()),
+    }
+}
+
+/// How far a recording has got: `84 of the 1,441 frames asked for`.
+pub fn recorded_of(recorded: u64, last_frame: u64) -> String {
+    match last_frame + 1 {
+        1 => "the one frame asked for".to_owned(),
+        all if recorded == all => format!("all {} frames", grouped(all)),
+        all => format!("{} of the {} frames asked for", grouped(recorded), grouped(all)),
     }
 }
 

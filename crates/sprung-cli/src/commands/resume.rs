@@ -4,28 +4,28 @@ use std::path::Path;
 
 use sprung::{Code, Error, Result, Simulation, significant as rounded};
 use sprung_io::RunInfo;
-use sprung_io::checkpoint::{Keeper, Plan as Recorded, Recording, Saved};
+use sprung_io::checkpoint::{Keeper, MOST_FRAMES, Plan as Recorded, Saved};
 
-use super::checkpoints::Checkpoints;
+use super::checkpoints::{Checkpoints, recorded_of};
 use super::record::Recorder;
-use super::run::{Plan, Run};
+use super::run::{Plan, Run, frames_in};
 use crate::args::{self, RunArgs};
-use crate::console::{counted, note, say};
+use crate::console::{note, say};
 use crate::interrupt::Interrupt;
+use crate::memory;
 use crate::source::{self, Begun};
 
 /// Goes on with the run that a checkpoint is of.
 pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
     let interrupt = Interrupt::listen()?;
     let (keeper, stored) = Keeper::resume(file)?;
-    let mut saved = source::read(file, &stored)?;
+    let mut saved = stored.read(&memory::check)?;
     let named = |error: Error| error.in_file(file.display().to_string());
     let Some(mut recording) = saved.recording.take() else {
         let error = Error::new(Code::Conflict, "holds a simulation, and no run that could be completed");
         let fix = format!("`sprung run {} -o NAME` records one that begins with it", file.display());
         return Err(named(error.with_fix(fix)));
     };
-    check(&recording).map_err(named)?;
     let Begun { name, simulation, .. } = source::begun_from(file, &saved, args.threads)?;
     lengthen(args, &mut recording.plan, &simulation).map_err(named)?;
 
@@ -76,27 +76,10 @@ pub fn run(args: &RunArgs, file: &Path) -> Result<()> {
     run.complete(args.quiet, &interrupt)
 }
 
-/// What a checkpoint must say of a run before anything is done by it.
-fn check(recording: &Recording) -> Result<()> {
-    let Recording { plan, marks } = recording;
-    let damaged = |what: &str| Err(Error::new(Code::Unreadable, format!("is damaged: {what}")));
-    if marks.len() != plan.outputs.len() + usize::from(plan.plot.is_some()) {
-        return damaged("it does not say of every output how far it had got");
-    }
-    const MOST: u64 = 100_000_000;
-    if plan.last_frame > MOST || plan.recorded == 0 || plan.recorded > plan.last_frame + 1 {
-        return damaged("the numbers of its frames cannot be");
-    }
-    if plan.from > plan.last_frame || plan.steps_per_frame == 0 || plan.steps_per_frame > MOST * 1000 {
-        return damaged("the numbers of its frames cannot be");
-    }
-    Ok(())
-}
-
 /// Another last frame, if one was asked for.
 fn lengthen(args: &RunArgs, plan: &mut Recorded, simulation: &Simulation) -> Result<()> {
     let frame_time = simulation.params().dt * plan.steps_per_frame as f64;
-    let wanted = args.seconds.map(|seconds| (seconds / frame_time - 1e-9).ceil().min(1e9) as u64);
+    let wanted = args.seconds.map(|seconds| frames_in(seconds, frame_time) as u64);
     let Some(last_frame) = args.frames.or(wanted).filter(|&frames| frames != plan.last_frame) else {
         return Ok(());
     };
@@ -104,11 +87,16 @@ fn lengthen(args: &RunArgs, plan: &mut Recorded, simulation: &Simulation) -> Res
         let error = Error::new(Code::Conflict, "holds a run that is over, so it cannot be made longer");
         return Err(error.with_fix("`sprung run` with this checkpoint and -o goes on in other files"));
     }
-    if last_frame + 1 < plan.recorded || last_frame < plan.from || last_frame > 100_000_000 {
-        let sentence = format!(
-            "holds {} of a run, and it was asked to end with frame {last_frame}",
-            counted(plan.recorded, "frame")
-        );
+    let last_recorded = plan.recorded - 1;
+    if last_frame < last_recorded {
+        let sentence =
+            format!("holds a run up to frame {last_recorded}, so that it cannot end with frame {last_frame}");
+        return Err(Error::new(Code::OutOfRange, sentence).with_fix("choose a later end"));
+    }
+    if last_frame < plan.from || last_frame > MOST_FRAMES {
+        let (from, most) = (plan.from, MOST_FRAMES);
+        let sentence =
+            format!("holds a run that can end with frame {from} to {most}, and not with frame {last_frame}");
         return Err(Error::new(Code::OutOfRange, sentence));
     }
     plan.last_frame = last_frame;
@@ -117,15 +105,10 @@ fn lengthen(args: &RunArgs, plan: &mut Recorded, simulation: &Simulation) -> Res
 
 /// Says where it goes on.
 fn tell(file: &Path, saved: &Saved, plan: &Recorded) {
-    let time = rounded(saved.checkpoint.state.time);
-    let of = plan.last_frame + 1;
-    note(format_args!(
-        "Going on with {}: {} of {of} at t = {time} s.",
-        file.display(),
-        counted(plan.recorded, "frame")
-    ));
+    let (there, time) = (recorded_of(plan.recorded, plan.last_frame), rounded(saved.checkpoint.state.time));
+    note(format_args!("Going on with {}, which has {there}, up to t = {time} s.", file.display()));
     if let Some(reason) = plan.ended.as_ref().filter(|reason| !reason.is_empty()) {
-        note(format_args!("The run had ended: {reason}. Its files are completed."));
+        note(format_args!("The run had ended: {reason}. Only its files are to be completed."));
     }
     let here = env!("CARGO_PKG_VERSION");
     if saved.program != here {

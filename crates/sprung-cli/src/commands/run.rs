@@ -5,7 +5,10 @@ use std::time::Instant;
 
 use sprung::params::DT_RANGE;
 use sprung::scene::Scene;
-use sprung::{Change, Code, Error, Result, SettleOptions, Simulation, significant as rounded, stability};
+use sprung::{
+    Change, Code, Error, MOST_STEPS, Result, SettleOptions, Simulation, significant as rounded, stability,
+};
+use sprung_io::checkpoint::MOST_FRAMES;
 use sprung_io::{RunInfo, Written, files};
 
 use super::checkpoints::Checkpoints;
@@ -14,7 +17,7 @@ use super::record::Recorder;
 use super::resume;
 use super::show::describe;
 use crate::args::RunArgs;
-use crate::console::{bytes, complain, counted, note, progress, say, seconds};
+use crate::console::{bytes, complain, counted, grouped, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
 use crate::source::{self, Begun};
 
@@ -24,17 +27,14 @@ const DEFAULT_SECONDS: f64 = 10.0;
 /// A dt above this share of the sharp limit is warned of: the limit is computed from below.
 const WARNING_SHARE: f64 = 0.95;
 
-/// Frames allowed in one run.
-const MAX_FRAMES: f64 = 1e8;
-
 /// Runs, and says what was done.
 pub fn run(args: &RunArgs) -> Result<()> {
     if let Some(file) = &args.resume {
         return resume::run(args, file);
     }
     let interrupt = Interrupt::listen()?;
-    let Begun { name, scene, mut simulation } = source::begun(&args.scene(), args.threads)?;
-    let plan = Plan::new(args, &simulation)?;
+    let Begun { name, scene, mut simulation, steps_per_frame } = source::begun(&args.scene(), args.threads)?;
+    let plan = Plan::new(args, &simulation, steps_per_frame)?;
     if plan.dt != simulation.params().dt {
         simulation.change(Change::Dt(plan.dt))?;
     }
@@ -79,11 +79,11 @@ pub struct Run {
 impl Run {
     /// Simulates what there is to simulate, completes the outputs, and says what was done.
     pub fn complete(mut self, quiet: bool, interrupt: &Interrupt) -> Result<()> {
-        let begun_at = self.simulation.now().1;
+        let (first_step, begun_at) = self.simulation.now();
         let begun = Instant::now();
         let outcome = self.simulate(quiet, interrupt);
         let simulated_in = begun.elapsed();
-        let Self { name, plan, mut simulation, mut recorder, mut checkpoints, .. } = self;
+        let Self { name, plan, mut simulation, mut recorder, mut checkpoints, recorded, .. } = self;
 
         // Whatever happened: the whole frames that there are become whole files, and until they are, what it takes to
         // complete them is safe.
@@ -103,14 +103,24 @@ impl Run {
         }
         errors.extend(checkpoints.and_then(Checkpoints::failure));
         all_said(errors)?;
-        if !quiet {
-            let state = simulation.state();
-            let pace = (state.time - begun_at) / simulated_in.as_secs_f64().max(1e-9);
+        let left = plan.frames + 1 - recorded;
+        if !quiet && left == 0 {
+            let hash = simulation.state_hash();
             say(format_args!(
-                "{name}: {}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
-                counted(plan.frames + 1, "frame"),
-                counted(state.step, "step"),
-                rounded(state.time),
+                "{name}: there was nothing left to simulate, and its files are complete now; state hash {hash:016x}"
+            ));
+        } else if !quiet {
+            // What was done here and now: another run may have led to where this one began.
+            let (step, time) = simulation.now();
+            let pace = (time - begun_at) / simulated_in.as_secs_f64().max(1e-9);
+            let frames = match recorded {
+                0 => counted(left, "frame"),
+                _ => format!("{} ({} in all)", counted(left, "more frame"), grouped(plan.frames + 1)),
+            };
+            say(format_args!(
+                "{name}: {frames}, {}, {} s simulated in {} ({pace:.1} × real time); state hash {:016x}",
+                counted(step - first_step, "step"),
+                rounded(time - begun_at),
                 seconds(simulated_in),
                 simulation.state_hash()
             ));
@@ -198,7 +208,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    fn new(args: &RunArgs, simulation: &Simulation) -> Result<Self> {
+    /// `steps_per_frame` is what holds unless a frame rate is asked for.
+    fn new(args: &RunArgs, simulation: &Simulation, steps_per_frame: u64) -> Result<Self> {
         let params = simulation.params();
         let (dt, steps_per_frame) = match args.fps {
             // The largest step not above dt that divides a frame; a quotient that is whole up to rounding is whole.
@@ -207,12 +218,12 @@ impl Plan {
                 // Not below the smallest step allowed, which a quotient may miss by its rounding.
                 ((1.0 / (fps * steps)).max(*DT_RANGE.start()), steps as u64)
             }
-            None => (params.dt, u64::from(params.substeps)),
+            None => (params.dt, steps_per_frame),
         };
         let frame_time = dt * steps_per_frame as f64;
-        let frames = (args.seconds.unwrap_or(DEFAULT_SECONDS) / frame_time - 1e-9).ceil();
-        if args.frames.is_none() && frames > MAX_FRAMES {
-            let sentence = format!("would make {frames:.0} frames, and at most {MAX_FRAMES:.0} are allowed");
+        let frames = frames_in(args.seconds.unwrap_or(DEFAULT_SECONDS), frame_time);
+        if args.frames.is_none() && frames > MOST_FRAMES as f64 {
+            let sentence = format!("would make {frames:.0} frames, and at most {MOST_FRAMES} are allowed");
             return Err(Error::new(Code::TooLarge, sentence).in_file("--seconds"));
         }
         let fitted = args.fps.filter(|_| dt != params.dt).map(|fps| (fps, params.dt));
@@ -221,6 +232,11 @@ impl Plan {
         if from > frames {
             let sentence = format!("is frame {from}, and the last one is {frames}");
             return Err(Error::new(Code::OutOfRange, sentence).in_file("--from"));
+        }
+        if steps_per_frame.checked_mul(frames).is_none_or(|steps| steps > MOST_STEPS) {
+            let steps = steps_per_frame as f64 * frames as f64;
+            let sentence = format!("would take {steps:e} steps, and at most {MOST_STEPS} can be counted");
+            return Err(Error::new(Code::TooLarge, sentence).with_fix("record fewer frames, or raise dt"));
         }
         Ok(Self { start: simulation.now().1, dt, steps_per_frame, frames, from, fitted })
     }
@@ -239,6 +255,11 @@ impl Plan {
     }
 }
 
+/// So much time, rounded up to whole frames; what is whole up to rounding is whole.
+pub fn frames_in(seconds: f64, frame_time: f64) -> f64 {
+    (seconds / frame_time - 1e-9).ceil()
+}
+
 fn info(name: &str, scene: &Scene, simulation: &Simulation, plan: &Plan) -> RunInfo {
     RunInfo {
         scene: name.to_owned(),
@@ -255,6 +276,12 @@ fn settle(quiet: bool, simulation: &mut Simulation, interrupt: &Interrupt) -> Re
     let settled = simulation.settle_with(SettleOptions::default(), &mut |so_far| {
         bar.set_position(so_far.steps);
         if interrupt.came() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let settled = settled.map_err(|error| match error.code() {
+        Code::NotSettled => error.with_fix(
+            "hold every body by a pin or a plane, or leave out --settle and let it rest in a longer run",
+        ),
+        _ => error,
     })?;
     bar.finish_and_clear();
     if !quiet {

@@ -1,12 +1,11 @@
 //! `sprung show`: what a scene is, and how large dt may be.
 
-use std::path::Path;
-
 use serde::Serialize;
 use sprung::stability::{self, Limit, Setter, Sharp};
 use sprung::{Energy, Result, Simulation, significant as rounded};
-use sprung_io::checkpoint::{Recording, Stored};
+use sprung_io::checkpoint::Recording;
 
+use super::checkpoints::recorded_of;
 use crate::args::ShowArgs;
 use crate::console::{counted, grouped, say};
 use crate::source::{self, Begun};
@@ -22,7 +21,8 @@ struct Answer {
     bodies: Vec<String>,
     /// s.
     dt: f64,
-    substeps: u32,
+    /// Steps from one frame to the next.
+    substeps: u64,
     /// s; simulated time from one frame to the next.
     frame_time: f64,
     /// s.
@@ -80,7 +80,7 @@ struct EnergyParts {
 /// Prints the description.
 pub fn run(args: &ShowArgs) -> Result<()> {
     let (begun, checkpoint) = begun(args)?;
-    let Begun { name, scene, mut simulation } = begun;
+    let Begun { name, scene, mut simulation, steps_per_frame } = begun;
     let energy = simulation.energy();
     let (model, params, positions) = (simulation.model(), simulation.params(), &simulation.state().position);
     // Of a large scene each takes about a second; so both at once.
@@ -99,8 +99,8 @@ pub fn run(args: &ShowArgs) -> Result<()> {
             pinned: fixed_points(&simulation),
             bodies: model.bodies().iter().map(|body| body.name.clone()).collect(),
             dt: params.dt,
-            substeps: params.substeps,
-            frame_time: params.dt * f64::from(params.substeps),
+            substeps: steps_per_frame,
+            frame_time: params.dt * steps_per_frame as f64,
             dt_limit: sharp.dt,
             dt_limit_certified: certified.map(|limit| limit.dt),
             dt_limit_every_configuration: every.map(|limit| limit.dt),
@@ -123,18 +123,17 @@ pub fn run(args: &ShowArgs) -> Result<()> {
         if let Some(checkpoint) = &checkpoint {
             print_checkpoint(checkpoint);
         }
-        print(&simulation, &energy, &sharp, certified.as_ref(), every.as_ref());
+        print(&simulation, steps_per_frame, &energy, &sharp, certified.as_ref(), every.as_ref());
     }
     Ok(())
 }
 
 /// What is to be described: a scene at its start, or what a checkpoint holds.
 fn begun(args: &ShowArgs) -> Result<(Begun, Option<OfCheckpoint>)> {
-    if !source::is_checkpoint(&args.scene.scene) || !args.scene.set.is_empty() {
+    if !source::is_checkpoint(&args.scene.scene) {
         return Ok((source::begun(&args.scene, Some(1))?, None));
     }
-    let path = Path::new(&args.scene.scene);
-    let saved = source::read(path, &Stored::open(path)?)?;
+    let (path, saved) = source::saved(&args.scene)?;
     let begun = source::begun_from(path, &saved, Some(1))?;
     let recording = saved.recording.map(|Recording { plan, .. }| OfRecording {
         recorded_frames: plan.recorded,
@@ -153,9 +152,9 @@ fn print_checkpoint(checkpoint: &OfCheckpoint) {
     let OfCheckpoint { program, step, time, recording } = checkpoint;
     row("checkpoint", format!("step {}, t = {} s, by sprung {program}", grouped(*step), rounded(*time)));
     let Some(recording) = recording else { return };
-    let frames = format!("{} of {}", grouped(recording.recorded_frames), grouped(recording.last_frame + 1));
+    let frames = recorded_of(recording.recorded_frames, recording.last_frame);
     row(
-        "frames recorded",
+        "recorded",
         match recording.ended.as_deref() {
             None => frames,
             Some("") => format!("{frames}; the run is over"),
@@ -175,6 +174,7 @@ fn row(label: &str, text: String) {
 
 fn print(
     simulation: &Simulation,
+    steps_per_frame: u64,
     energy: &Energy,
     sharp: &Sharp,
     certified: Option<&Limit>,
@@ -186,8 +186,8 @@ fn print(
     row("springs", grouped(model.spring_count()));
     row("moving mass", format!("{} kg", rounded(total_mass(simulation))));
     row("energy", format!("{} J", rounded(energy.total())));
-    let frame = rounded(params.dt * f64::from(params.substeps));
-    let substeps = counted(params.substeps.into(), "substep");
+    let frame = rounded(params.dt * steps_per_frame as f64);
+    let substeps = counted(steps_per_frame, "substep");
     row("dt", format!("{} s × {substeps} = {frame} s per frame", rounded(params.dt)));
     match sharp.dt {
         None => row("dt limit", "none: nothing here limits the step".to_owned()),

@@ -54,19 +54,13 @@ impl<'a, R: Read> Sections<'a, R> {
     pub fn open(file: &'a mut R, bytes: u64) -> Result<Self> {
         let mut sections = Self { file, left: bytes, sections_left: 0, version: 0 };
         let mut header = [0; FILE_HEADER];
-        if bytes < FILE_HEADER as u64 {
-            let mut start = vec![0; bytes as usize];
-            sections.fill(&mut start)?;
-            return Err(match start.len().min(MAGIC.len()) {
-                1.. if MAGIC.starts_with(&start[..start.len().min(MAGIC.len())]) => {
-                    damaged("it ends within its header")
-                }
-                _ => no_checkpoint(),
-            });
+        let there = bytes.min(FILE_HEADER as u64) as usize;
+        sections.fill(&mut header[..there])?;
+        if there == 0 || !MAGIC.starts_with(&header[..there.min(MAGIC.len())]) {
+            return Err(Error::new(Code::Unreadable, "is no checkpoint: it does not begin like one"));
         }
-        sections.fill(&mut header)?;
-        if header[..8] != MAGIC {
-            return Err(no_checkpoint());
+        if there < FILE_HEADER {
+            return Err(damaged("it ends within its header"));
         }
         if u32_at(&header, 16) != crc32fast::hash(&header[..16]) {
             return Err(damaged("its header does not match its checksum"));
@@ -131,8 +125,4 @@ fn u32_at(bytes: &[u8], start: usize) -> u32 {
 /// The error for content that is not what was written.
 pub fn damaged(what: &str) -> Error {
     Error::new(Code::Unreadable, format!("is damaged: {what}"))
-}
-
-fn no_checkpoint() -> Error {
-    Error::new(Code::Unreadable, "is no checkpoint: it does not begin like one")
 }

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use sprung::{Code, Error, Result};
 
-use super::Saved;
+use super::{AskMemory, Saved, ask};
 use crate::files::{self, File, PartialFile, write_error};
 
-/// A checkpoint file that was opened, and not read yet: how large it is can be asked before memory is taken for it.
+/// A checkpoint file that was opened, and not read yet.
 #[derive(Debug)]
 pub struct Stored {
     path: PathBuf,
@@ -31,22 +31,14 @@ impl Stored {
         Ok(Self { path: path.to_owned(), file, bytes })
     }
 
-    /// Its size.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    /// Memory that it takes to read it, at most, bytes: what it holds, and once more its largest section.
-    pub fn memory(&self) -> u64 {
-        self.bytes.saturating_mul(2)
-    }
-
     /// Reads it.
     ///
     /// # Errors
-    /// As [`Saved::read_from`], naming the file.
-    pub fn read(&self) -> Result<Saved> {
-        let read = Saved::read_from(&mut BufReader::with_capacity(1 << 16, &self.file), self.bytes);
+    /// Those of `memory` and of [`Saved::read_from`], naming the file.
+    pub fn read(&self, memory: &AskMemory<'_>) -> Result<Saved> {
+        // At most what it holds, and once more its largest section.
+        let read = ask(memory, self.bytes.saturating_mul(2), "the checkpoint")
+            .and_then(|()| Saved::read_from(&mut BufReader::with_capacity(1 << 16, &self.file), self.bytes));
         read.map_err(|error| error.in_file(self.path.display().to_string()))
     }
 }
@@ -78,7 +70,10 @@ impl Keeper {
     /// [`Code::Unreadable`] if it is not there, and as [`begin`](Self::begin).
     pub fn resume(path: &Path) -> Result<(Self, Stored)> {
         drop(files::open_ordinary(path)?);
-        let held = files::hold(path)?;
+        let held = files::hold(path).map_err(|error| match error.code() {
+            Code::Unwritable => error.with_fix("wait until it is over"),
+            _ => error,
+        })?;
         let again = held.try_clone().map_err(|error| files::read_error(path, &error))?;
         Ok((Self { path: path.to_owned(), held: Some(held) }, Stored::of(path, again)?))
     }

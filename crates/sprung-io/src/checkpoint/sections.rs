@@ -1,4 +1,4 @@
-//! What the sections of version 2 hold, in their order; version 1 is the same without `meshes`:
+//! What the sections of version 1 hold, in their order:
 //!
 //! | section | content |
 //! |---|---|
@@ -21,7 +21,7 @@ use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 use sprung::energy::LedgerSums;
-use sprung::{Checkpoint, Code, Error, Result, State};
+use sprung::{Checkpoint, Code, Error, Params, Result, State};
 
 use super::container::{Sections, damaged, write_header, write_section};
 use super::{Plan, Recording, Saved, VERSION};
@@ -46,8 +46,6 @@ const NAMES: [&str; 15] = [
     "cuts",
     "meshes",
 ];
-/// How many of them version 1 has.
-const OF_VERSION_1: usize = 14;
 const OF_RECORDINGS: [&str; 2] = ["run", "outputs"];
 
 pub fn write(saved: &Saved, out: &mut impl Write) -> io::Result<()> {
@@ -110,12 +108,15 @@ fn marks(marks: &[Mark]) -> Vec<u8> {
 
 pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
     let mut sections = Sections::open(file, bytes)?;
-    if !(1..=VERSION).contains(&sections.version) {
-        let found = sections.version;
-        let sentence = format!(
-            "is in version {found} of the format, and this program reads versions 1 to {VERSION}: a newer one wrote it"
-        );
-        return Err(Error::new(Code::Unsupported, sentence));
+    match sections.version {
+        VERSION => {}
+        0 => return Err(damaged("it has no version of the format")),
+        found => {
+            let sentence = format!(
+                "is in version {found} of the format, and this program knows version {VERSION}: a newer one wrote it"
+            );
+            return Err(Error::new(Code::Unsupported, sentence).with_fix("use the newest sprung"));
+        }
     }
     // Read one after another, and their bytes let go: both at once would be twice the memory.
     let mut saved = Saved {
@@ -131,25 +132,27 @@ pub fn read(file: &mut impl Read, bytes: u64) -> Result<Saved> {
         },
         recording: None,
     };
-    let names = if sections.version == 1 { &NAMES[..OF_VERSION_1] } else { &NAMES };
     let mut hash = 0;
     // How often each section came: once is right.
     let mut came = BTreeMap::<&str, u32>::new();
     while let Some((name, content)) = sections.next()? {
-        let Some(known) = names.iter().chain(&OF_RECORDINGS).find(|known| **known == name) else {
-            return Err(damaged(&format!("there is no section `{name}` in version {}", sections.version)));
+        let Some(known) = NAMES.iter().chain(&OF_RECORDINGS).find(|known| **known == name) else {
+            return Err(damaged(&format!("there is no section `{name}` in version {VERSION}")));
         };
         *came.entry(known).or_default() += 1;
         read_section(&mut saved, &mut hash, known, &content)
             .map_err(|error| damaged(&format!("the section `{known}` {}", error.sentence())))?;
     }
     let wanted = |name: &&str| saved.recording.is_none() && OF_RECORDINGS.contains(name);
-    for name in names.iter().chain(&OF_RECORDINGS).filter(|name| !wanted(name)) {
+    for name in NAMES.iter().chain(&OF_RECORDINGS).filter(|name| !wanted(name)) {
         match came.get(name) {
             Some(1) => {}
             None => return Err(damaged(&format!("the section `{name}` is missing"))),
             Some(_) => return Err(damaged(&format!("the section `{name}` is there twice"))),
         }
+    }
+    if saved.recording.as_ref().is_some_and(|recording| !recording.is_sound()) {
+        return Err(damaged("what it says of its run does not fit together"));
     }
     if saved.checkpoint.state.hash() != hash {
         return Err(damaged("its positions and velocities do not match their hash"));
@@ -184,12 +187,16 @@ fn read_section(saved: &mut Saved, hash: &mut u64, name: &str, content: &[u8]) -
         "velocities" => state.velocity = read.vec3s()?,
         "velocities-low" => state.velocity_low = read.vec3s()?,
         "parameters" => {
-            let short = read.short_params()?;
-            (params.dt, params.substeps, params.gravity) = (short.dt, short.substeps, short.gravity);
-            params.planes = short.planes;
-            params.external_forces = short.external_forces;
-            params.carried = short.carried;
-            params.grabs = short.grabs;
+            // The arrays have sections of their own.
+            *params = Params {
+                point_mass: params.point_mass.clone(),
+                point_pinned: params.point_pinned.clone(),
+                spring_stiffness: params.spring_stiffness.clone(),
+                spring_damping: params.spring_damping.clone(),
+                spring_rest_length: params.spring_rest_length.clone(),
+                spring_cut: params.spring_cut.clone(),
+                ..read.short_params()?
+            };
         }
         "masses" => params.point_mass = Arc::new(read.f32s()?),
         "pins" => params.point_pinned = Arc::new(read.bools()?),

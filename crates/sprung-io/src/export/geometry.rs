@@ -4,7 +4,7 @@
 //! let mut geometry = Geometry::new(run, options, Springs::None)?;   // what stays the same
 //! geometry.take(frame);                                             // where it is now
 //! for part in geometry.parts() {
-//!     write(&part.name, &geometry.positions()[part.vertices.clone()], &part.triangles);
+//!     write(&part.name, &geometry.positions()[part.vertices.clone()], part.faces());
 //! }
 //! ```
 //!

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use sprung::{Code, Error};
 use sprung_io::checkpoint::{Keeper, Stored};
 
 use crate::{bytes_of, small};
@@ -27,7 +28,7 @@ fn one_run_at_a_time_keeps_a_checkpoint() {
         let bytes = keeper.write(&saved).expect("there is room");
         assert_eq!(bytes, bytes_of(&saved).len() as u64);
         // To look at it is allowed, at any time.
-        assert_eq!(Stored::open(&path).and_then(|stored| stored.read()), Ok(saved.clone()));
+        assert_eq!(Stored::open(&path).and_then(|stored| stored.read(&|_, _| Ok(()))), Ok(saved.clone()));
         for refused in [Keeper::resume(&path).map(drop), Keeper::begin(&path).map(drop)] {
             let text = refused.expect_err("it is kept already").to_string();
             assert!(text.contains("is the checkpoint of a run that is still going"), "{text}");
@@ -36,7 +37,7 @@ fn one_run_at_a_time_keeps_a_checkpoint() {
     }
     drop(keeper);
     let (mut keeper, stored) = Keeper::resume(&path).expect("nobody keeps it any more");
-    assert_eq!(stored.read(), Ok(saved.clone()));
+    assert_eq!(stored.read(&|_, _| Ok(())), Ok(saved.clone()));
     keeper.write(&saved).expect("it goes on");
 }
 
@@ -66,7 +67,7 @@ fn what_is_no_file_is_refused_without_waiting() {
         drop(keeper);
         std::os::unix::fs::symlink("real.sprung", path("good.sprung")).expect("a link");
         let (mut keeper, stored) = Keeper::resume(&path("good.sprung")).expect("it is one");
-        assert_eq!(stored.read(), Ok(small()));
+        assert_eq!(stored.read(&|_, _| Ok(())), Ok(small()));
         keeper.write(&small()).expect("there is room");
         assert!(path("good.sprung").is_symlink());
     }
@@ -89,5 +90,11 @@ fn a_huge_file_takes_no_memory_before_it_is_asked_for() {
         return; // a file system without holes
     }
     let stored = Stored::open(&path).expect("it is a file");
-    assert!(stored.memory() > 1 << 41);
+    // Whoever is asked says no; the file is not blamed, nor are its points.
+    let error = stored.read(&|bytes, what| {
+        assert!(bytes > 1 << 41);
+        Err(Error::new(Code::TooLarge, format!("{what} is more than there is room for")))
+    });
+    let said = "the checkpoint is more than there is room for; free some, or go on with it on a machine that has more";
+    assert!(error.expect_err("there is no room").to_string().ends_with(said));
 }

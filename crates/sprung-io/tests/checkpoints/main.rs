@@ -16,12 +16,18 @@ use sprung_io::checkpoint::{Plan, Recording, Saved};
 use sprung_io::import::load_meshes;
 use sprung_io::{FileMark, Mark, Options};
 
-/// Three points and two springs, of which everything that a checkpoint can hold has been changed.
+/// Three points and two springs.
+const ROW: &str = "title = \"Three in a row\"\ndt = 0.01\nsubsteps = 2\n\n[[body]]\nname = \"row\"\n\
+                   points = [[0, 0, 0], [1, 0, 0], [2, 0.5, 0]]\npoint_mass = 0.5\npins = [0]\n\n[[body.springs]]\n\
+                   pairs = [[0, 1], [1, 2]]\nstiffness = 50.0\ndamping = 0.5\n";
+
+/// They, of which everything that a checkpoint can hold has been changed, meshes apart.
 fn small() -> Saved {
-    let text = "title = \"Three in a row\"\ndt = 0.01\nsubsteps = 2\n\n[[body]]\nname = \"row\"\n\
-                points = [[0, 0, 0], [1, 0, 0], [2, 0.5, 0]]\npoint_mass = 0.5\npins = [0]\n\n[[body.springs]]\n\
-                pairs = [[0, 1], [1, 2]]\nstiffness = 50.0\ndamping = 0.5\n";
-    let scene = Scene::parse(text, "row.toml").expect("a scene");
+    on_its_way("row", &Scene::parse(ROW, "row.toml").expect("a scene"))
+}
+
+/// A scene that begins with the row, under way and changed, in the midst of a recording.
+fn on_its_way(name: &str, scene: &Scene) -> Saved {
     let mut simulation = scene.simulation().expect("it can be built");
     simulation.keep_ledger(true);
     simulation.steps(3).expect("it is stable");
@@ -46,7 +52,7 @@ fn small() -> Saved {
         simulation.change(change).expect("it is allowed");
     }
     simulation.steps(4).expect("it is stable");
-    let mut saved = Saved::new("row", &scene, &mut simulation);
+    let mut saved = Saved::new(name, scene, &mut simulation);
     // Not of the day on which the test runs.
     saved.program = "0.1.0".to_owned();
     // Nor of how the ledger is summed up, which may become faster: its last digits are no part of the promise.
@@ -93,13 +99,11 @@ fn small() -> Saved {
     saved
 }
 
-/// The same with a fourth point and a triangle of net made from a mesh, whose file nobody will find.
+/// The same with a triangle of net made from a mesh, whose file nobody will find.
 fn netted() -> Saved {
-    let mut saved = small();
     let text = format!(
-        "{}\n[[body]]\nname = \"net\"\nmesh = \"gone/net.ply\"\nbody_mass = 0.25\npins = [{{ group = \"rail\" }}]\n\
-         net = {{ stiffness = 10.0 }}\n",
-        saved.scene
+        "{ROW}\n[[body]]\nname = \"net\"\nmesh = \"gone/net.ply\"\nbody_mass = 0.25\npins = [{{ group = \"rail\" }}]\n\
+         net = {{ stiffness = 10.0 }}\n"
     );
     let mut scene = Scene::parse(&text, "netted.toml").expect("a scene");
     let mut faces = Faces::default();
@@ -113,11 +117,7 @@ fn netted() -> Saved {
         ..Mesh::default()
     };
     scene.load_meshes(&mut |_| Ok(mesh.clone())).expect("a mesh");
-    let mut simulation = scene.simulation().expect("it can be built");
-    simulation.steps(5).expect("it is stable");
-    let recording = saved.recording.take();
-    saved = Saved { program: saved.program, recording, ..Saved::new("netted", &scene, &mut simulation) };
-    saved
+    on_its_way("netted", &scene)
 }
 
 fn bytes_of(saved: &Saved) -> Vec<u8> {

@@ -39,12 +39,14 @@ fn a_pipe_is_left_alone() {
 }
 
 #[test]
-fn a_window_does_not_wait_for_a_pipe() {
+fn a_pipe_is_not_waited_for() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let pipe = folder.path().join("pipe.toml");
     make_pipe(&pipe);
     let error = files::read_ordinary(&pipe, 100).expect_err("nobody writes into it");
     assert_eq!(error.sentence(), "is a pipe or a device, and must be an ordinary file");
+    // Nor by what the command reads scenes with, unless the shell handed it over.
+    assert_eq!(files::read_or_take(&pipe, 100).expect_err("nobody writes into it"), error);
     fs::write(folder.path().join("file.toml"), "abc").expect("a file");
     assert_eq!(files::read_ordinary(&folder.path().join("file.toml"), 100).expect("it is ordinary"), b"abc");
 }

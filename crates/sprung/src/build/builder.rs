@@ -264,8 +264,8 @@ impl ModelBuilder {
             kind,
             vertices: SurfaceVertices::Points,
             triangles,
-            stands_for_body: false,
             fans: Vec::new(),
+            stands_for_body: false,
         });
         Ok(())
     }
@@ -306,8 +306,8 @@ impl ModelBuilder {
             kind,
             vertices: SurfaceVertices::Weighted(vertices),
             triangles,
-            stands_for_body: false,
             fans: Vec::new(),
+            stands_for_body: false,
         });
         Ok(())
     }

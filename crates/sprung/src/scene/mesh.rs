@@ -405,6 +405,18 @@ impl Scene {
         meshes
     }
 
+    /// What is odd about the meshes that were read and was mended or left out, a sentence each that names body and file.
+    pub fn mesh_warnings(&self) -> Vec<String> {
+        let of = |body: &Body| -> Vec<String> {
+            let (Some(MeshFile { file, .. }), Some(made)) = (&body.mesh, body.made()) else {
+                return Vec::new();
+            };
+            let named = |sentence: &String| format!("{} ({}): {sentence}", body.name, shortened(file));
+            made.warnings.iter().map(named).collect()
+        };
+        self.bodies.iter().flat_map(of).collect()
+    }
+
     /// As [`load_meshes`](Self::load_meshes), with meshes that were read before: those that [`meshes`](Self::meshes) gave.
     ///
     /// # Errors
@@ -421,7 +433,6 @@ impl Scene {
 
     fn load_shared(&mut self, read: &mut dyn FnMut(&str) -> Result<Arc<Mesh>>) -> Result<Vec<String>> {
         let mut meshes: Vec<(String, Arc<Mesh>)> = Vec::new();
-        let mut warnings = Vec::new();
         let (origin, most_springs) = (self.origin.clone(), self.spring_limit());
         for (index, body) in self.bodies.iter_mut().enumerate() {
             let Some(MeshFile { file, .. }) = body.mesh.clone() else { continue };
@@ -435,13 +446,9 @@ impl Scene {
             };
             body.load(&format!("body[{index}]"), &mesh, most_springs)
                 .map_err(|error| origin.locate(error))?;
-            let said = body.made().map_or(&[][..], |made| &made.warnings);
-            warnings.extend(
-                said.iter().map(|sentence| format!("{} ({}): {sentence}", body.name, shortened(&file))),
-            );
         }
         check(self, MAX_POINTS).map_err(|error| origin.locate(error))?;
-        Ok(warnings)
+        Ok(self.mesh_warnings())
     }
 
     /// Takes over the meshes of the scene that this one was before a change.

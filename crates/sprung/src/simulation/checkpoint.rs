@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Simulation, check_counters, check_lengths, hold_fixed_points, load};
+use super::Simulation;
+use super::beginning::{check_counters, check_lengths, hold_fixed_points, load, vectors};
 use crate::error::{Code, Error, Result};
 use crate::model::Model;
 use crate::params::Params;
@@ -70,16 +71,10 @@ impl Simulation {
         let Checkpoint { mut state, params, keeps_ledger } = checkpoint;
         params.validate(&model)?;
         check_lengths(&model, &state)?;
-        for (field, vectors) in [("position", &state.position), ("velocity", &state.velocity)] {
+        for (field, vectors) in vectors(&state) {
             if let Some(index) = vectors.iter().position(|vector| !vector.is_finite()) {
                 let sentence = format!("is {}, and must be finite", vectors[index]);
                 return Err(Error::new(Code::OutOfRange, sentence).at_field(format!("{field}[{index}]")));
-            }
-        }
-        let lows = [("position_low", &state.position_low), ("velocity_low", &state.velocity_low)];
-        for (field, vectors) in lows {
-            if vectors.iter().any(|vector| !vector.is_finite()) {
-                return Err(Error::new(Code::OutOfRange, "holds a number that is not finite").at_field(field));
             }
         }
         check_counters(&state)?;

@@ -217,10 +217,10 @@ pub struct MeshSurface {
     pub vertices: Option<Vec<WeightedVertex>>,
     /// Triangles over the mesh's vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// Whether it is what is meant to be seen of the body; of a net that is its springs.
-    pub stands_for_body: bool,
     /// How many of them each face of the mesh is, as in [`Faces::fans`].
     pub fans: Vec<u32>,
+    /// Whether it is what is meant to be seen of the body; of a net that is its springs.
+    pub stands_for_body: bool,
 }
 
 /// `12 vertices`, `1 vertex`.
