@@ -55,6 +55,8 @@ pub enum Action {
     Picture,
     /// Begins or ends an animation.
     Record,
+    /// Saves the recorded motion for other programs.
+    Motion,
     /// Copies a link to the scene as it is.
     #[cfg(target_arch = "wasm32")]
     Link,
@@ -216,6 +218,13 @@ pub static ACTIONS: &[ActionInfo] = &[
     ),
     action!(Action::Picture, [command(Key::P)], icon::CAMERA, "Picture…", "Saves what is seen as a picture."),
     action!(Action::Record, [command(Key::R)], icon::FILM, "Film…", "Begins or ends a film of what is seen."),
+    action!(
+        Action::Motion,
+        [command(Key::E)],
+        icon::MOTION,
+        "Motion…",
+        "Saves the recorded motion for other programs: USD, glTF, caches, tables."
+    ),
     #[cfg(target_arch = "wasm32")]
     action!(
         Action::Link,

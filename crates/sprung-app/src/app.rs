@@ -10,6 +10,7 @@ use crate::action::{self, Action};
 use crate::files::{Files, Origin};
 #[cfg(target_arch = "wasm32")]
 use crate::link;
+use crate::motion::Motion;
 use crate::settings::Settings;
 use crate::state::{AppState, Shown, Tool};
 use crate::view::View;
@@ -70,6 +71,8 @@ impl App {
             is_narrow: false,
             overlays: Default::default(),
             filming: Default::default(),
+            motion: Default::default(),
+            motion_manner: Default::default(),
             pixels_per_point: 1.0,
             save_requests: Vec::new(),
             plot: Default::default(),
@@ -179,7 +182,7 @@ impl App {
                 let theme = &mut state.appearance.theme;
                 *theme = if *theme == Theme::Light { Theme::Dark } else { Theme::Light };
             }
-            Action::Open | Action::Save | Action::Checkpoint => self.cards.file(action, state),
+            Action::Open | Action::Save | Action::Checkpoint | Action::Motion => self.cards.file(action, state),
             Action::Picture | Action::Record => self.view.save(action, state),
             #[cfg(target_arch = "wasm32")]
             Action::Link => match link::link(&state.report, &state.camera) {
@@ -282,6 +285,9 @@ impl eframe::App for App {
         actions.extend(action::pressed(ui.ctx()));
         actions.into_iter().for_each(|action| self.act(ui.ctx(), action));
         self.name_window(ui.ctx());
+        if Motion::go_on(&mut self.state) {
+            ui.ctx().request_repaint();
+        }
         #[cfg(target_arch = "wasm32")]
         {
             crate::files::hand_out();
@@ -295,6 +301,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.view.drop_film();
+        self.state.motion.drop_it();
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

@@ -172,6 +172,12 @@ pub const TARGET: Icon = &[
     Line(&[(1.0, 8.0), (5.5, 8.0)]),
     Line(&[(10.5, 8.0), (15.0, 8.0)]),
 ];
+/// Out of a box.
+pub const MOTION: Icon = &[
+    Line(&[(5.5, 6.5), (3.0, 6.5), (3.0, 13.5), (13.0, 13.5), (13.0, 6.5), (10.5, 6.5)]),
+    Line(&[(8.0, 10.0), (8.0, 2.5)]),
+    Line(&[(5.2, 5.2), (8.0, 2.4), (10.8, 5.2)]),
+];
 /// Two links of a chain.
 #[cfg(target_arch = "wasm32")]
 pub const LINK: Icon = &[

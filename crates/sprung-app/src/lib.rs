@@ -13,6 +13,7 @@ pub mod files;
 mod icon;
 pub mod link;
 mod media;
+mod motion;
 #[cfg(not(target_arch = "wasm32"))]
 mod native;
 #[cfg(target_arch = "wasm32")]

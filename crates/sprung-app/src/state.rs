@@ -14,6 +14,7 @@ use crate::action::Action;
 use crate::explain::Stage;
 use crate::files::{Files, Found, Origin, Refused};
 use crate::media::{Filming, SaveRequest};
+use crate::motion::{Manner, Motion};
 use crate::plots::PlotKind;
 
 /// A point or a spring.
@@ -94,6 +95,10 @@ pub struct AppState {
     pub overlays: Overlays,
     /// How pictures and films are made, and what becomes of a film.
     pub filming: Filming,
+    /// A motion that is being written.
+    pub motion: Motion,
+    /// How motions are to be written.
+    pub motion_manner: Manner,
     /// Pixels for each of the window's points.
     pub pixels_per_point: f32,
     /// Files to be saved, until somebody asks where.

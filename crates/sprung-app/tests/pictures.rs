@@ -80,6 +80,10 @@ const CARDS: &[Shot] = &[
         // Any file that is there, and no farther than the question.
         enter(window, "../../scenes/chain.toml");
     }),
+    Shot::light("card-motion", "cloth", |window| {
+        play_to(window, 1.6);
+        act(window, Action::Motion);
+    }),
     Shot::light("card-picture", "spring", |window| act(window, Action::Picture)),
     Shot::light("card-hint", "jelly", |window| state(window).hint = true),
 ];

@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, RichText, TextEdit, Ui, vec2};
+use egui::{ComboBox, Context, RichText, TextEdit, Ui, vec2};
 use sprung::scene::Kind;
 use sprung_driver::Command;
-use sprung_io::checkpoint;
+use sprung_io::{Up, checkpoint};
 
 use super::{modal, primary};
 use crate::files::{self, Dialog, ENDING, OPENED, Origin, Wanted};
-use crate::media::{Film, SaveRequest};
+use crate::media::{Film, SaveRequest, file_stem};
+use crate::motion::{self, Motion};
 use crate::panel::scenes::{entries, scene_button};
 use crate::state::AppState;
 use crate::text::steady;
@@ -25,6 +26,8 @@ enum Purpose {
     Picture,
     /// A film that was recorded; the view writes it.
     Film,
+    /// The recorded motion, for other programs.
+    Motion,
 }
 
 /// A card with a path.
@@ -84,6 +87,14 @@ impl FileCard {
         Self { purpose: Purpose::Film, path: name.to_owned(), ending: "gif", ..Self::open() }
     }
 
+    /// To save the recorded motion.
+    pub fn motion(state: &mut AppState) -> Self {
+        state.send(Command::Play(false));
+        let ending = "usdc";
+        let path = format!("{}.{ending}", file_stem(&state.report.opened.name));
+        Self { purpose: Purpose::Motion, path, ending, ..Self::open() }
+    }
+
     /// What it is called.
     pub fn title(&self) -> &'static str {
         match self.purpose {
@@ -93,6 +104,7 @@ impl FileCard {
             Purpose::Picture if self.ending == "csv" => "Save the numbers",
             Purpose::Picture => "Save the picture",
             Purpose::Film => "Save the film",
+            Purpose::Motion => "Save the motion",
         }
     }
 
@@ -144,9 +156,14 @@ impl FileCard {
                 self.media_ui(ui, state, "files", &[ending], about)
             }
             Purpose::Film => {
-                let about = "As an animation (.gif), or as a film (.mp4), which needs ffmpeg.";
-                self.media_ui(ui, state, "films", &["gif", "mp4"], about)
+                let (endings, about): (&[&str], _) = if cfg!(target_arch = "wasm32") {
+                    (&["gif"], "As an animation that plays everywhere (.gif).")
+                } else {
+                    (&["gif", "mp4"], "As an animation (.gif), or as a film (.mp4), which needs ffmpeg.")
+                };
+                self.media_ui(ui, state, "films", endings, about)
             }
+            Purpose::Motion => self.motion_ui(ui, state),
         });
         if is_done && purpose == Purpose::Film && matches!(state.filming.film, Film::Waits(_)) {
             self.asks_to_discard = true;
@@ -237,6 +254,47 @@ impl FileCard {
         entered && self.go(state, false)
     }
 
+    fn motion_ui(&mut self, ui: &mut Ui, state: &mut AppState) -> bool {
+        let endings: Vec<_> = motion::formats().map(|format| format.ending).collect();
+        let name = self.path.clone();
+        let wanted = Wanted { title: "Save", kind: "motions", endings: &endings, save_as: Some(&name) };
+        let entered = self.path_row(ui, &wanted, "Save");
+        let of_path = Path::new(&self.path).extension().map(|it| it.to_string_lossy().to_lowercase());
+        let chosen = motion::formats().find(|format| Some(format.ending) == of_path.as_deref());
+        ui.horizontal(|ui| {
+            let shown = chosen.map_or_else(|| "format".to_owned(), |format| format!(".{}", format.ending));
+            ComboBox::from_id_salt("format").width(80.0).selected_text(shown).show_ui(ui, |ui| {
+                for format in motion::formats() {
+                    let text = format!(".{}: {}", format.ending, format.description);
+                    if ui.selectable_label(chosen.is_some_and(|it| it.ending == format.ending), text).clicked() {
+                        self.ending = format.ending;
+                        self.path = Path::new(&self.path).with_extension(format.ending).display().to_string();
+                    }
+                }
+            });
+            let manner = &mut state.motion_manner;
+            let rate = |rate: u32| format!("{rate} frames a second");
+            ComboBox::from_id_salt("rate").width(150.0).selected_text(rate(manner.rate)).show_ui(ui, |ui| {
+                for choice in motion::RATES {
+                    ui.selectable_value(&mut manner.rate, choice, rate(choice));
+                }
+            });
+            for (up, name) in [(Up::Y, "Y up"), (Up::Z, "Z up")] {
+                ui.radio_value(&mut manner.up, up, name);
+            }
+        });
+        if let Some(format) = chosen {
+            ui.weak(format!("{}.", capitalised(format.description)));
+        }
+        let timeline = &state.report.timeline;
+        ui.weak(format!(
+            "Saved is the recorded run, {} s of it, with all that hands and changes did. What else formats can hold is said in \
+             docs/export.md; `sprung run` has all options.",
+            steady(timeline.newest.1 - timeline.first.1)
+        ));
+        entered && self.go(state, false)
+    }
+
     /// The field for a path, the system's dialog, and the button; gives whether the path is to be taken.
     fn path_row(&mut self, ui: &mut Ui, wanted: &Wanted<'_>, verb: &str) -> bool {
         let mut entered = false;
@@ -315,6 +373,17 @@ impl FileCard {
                 state.filming.film = Film::To(path.to_owned());
                 return true;
             }
+            Purpose::Motion => {
+                // Written a little in each frame, too.
+                return match Motion::begin(state, path, state.motion_manner) {
+                    Ok(()) => true,
+                    Err(error) => {
+                        state.refuse(error);
+                        self.choose_again();
+                        false
+                    }
+                };
+            }
             Purpose::Picture => match state.save_requests.first() {
                 Some(request) => files::write(path, &request.bytes),
                 None => return true,
@@ -340,6 +409,12 @@ impl FileCard {
             }
         }
     }
+}
+
+/// A phrase as the beginning of a sentence.
+fn capitalised(phrase: &str) -> String {
+    let mut letters = phrase.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// A question whose first answer does harm, and whose second, or closing it, does not; `None` as long as it is open.

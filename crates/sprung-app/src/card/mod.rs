@@ -94,6 +94,7 @@ impl Cards {
         self.file = match action {
             Action::Save => Some(file::FileCard::save(state)),
             Action::Checkpoint => Some(file::FileCard::checkpoint(state)),
+            Action::Motion => Some(file::FileCard::motion(state)),
             _ => Some(file::FileCard::open()),
         };
     }

@@ -48,6 +48,7 @@ impl Controls {
                 ui.horizontal_wrapped(|ui| {
                     action_button(ui, state, Action::Picture);
                     action_button(ui, state, Action::Record);
+                    action_button(ui, state, Action::Motion);
                 });
             });
             ui.add_space(8.0);

@@ -254,7 +254,7 @@ impl View {
     }
 
     fn overlay(&mut self, ui: &mut egui::Ui, rect: egui::Rect, state: &mut AppState) {
-        let badge = self.saver.badge();
+        let badge = self.saver.badge().or_else(|| state.motion.badge());
         if let Some(cut) = self.pointer.cut() {
             overlay::cut_line(ui, rect, cut);
         }
