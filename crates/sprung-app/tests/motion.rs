@@ -64,20 +64,21 @@ fn the_motion_is_what_happened() {
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let columns: Vec<&str> = lines.next().expect("it has a header").split(',').collect();
     let column = |name: &str| columns.iter().position(|column| *column == name).expect(name);
-    let [step_at, point_at] = ["step", "point"].map(column);
+    let [time_at, point_at] = ["time", "point"].map(column);
     let at = ["x", "y", "z"].map(column);
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     let points = report(&window).now.positions.len();
     let frames = (24.0 * newest.1 + 1e-6) as usize + 1;
     assert_eq!(rows.len(), frames * points, "24 frames a second");
     for frame in 0..frames {
-        let step: u64 = rows[frame * points][step_at].parse().expect("it is a number");
-        let time = frame as f64 / 24.0;
-        assert!((step as f64 * dt - time).abs() <= 0.5 * dt + 1e-9, "frame {frame} is step {step}");
+        let time: f64 = rows[frame * points][time_at].parse().expect("it is a number");
+        assert!((time - frame as f64 / 24.0).abs() <= 0.5 * dt + 1e-9, "frame {frame} is at {time} s");
+        let step = (time / dt).round() as u64;
         // As the run is at that step when one goes there.
         state(&mut window).send(Command::Seek(step));
         window.run_steps(1);
         let now = report(&window).now.clone();
+        assert_eq!(now.time, time);
         for row in &rows[frame * points..(frame + 1) * points] {
             let point: usize = row[point_at].parse().expect("it is a number");
             let written = at.map(|column| row[column].parse::<f32>().expect("it is a number"));
