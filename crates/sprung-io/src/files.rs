@@ -1,12 +1,12 @@
 //! The one place that knows paths: outputs grow beside their place and are renamed when whole.
 
 mod resume;
+mod system;
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use same_file::Handle;
 use sprung::{Code, Error, Result};
 
 pub use resume::{is_complete, remove_spools};
@@ -346,8 +346,8 @@ fn open_locked(path: &Path, opening: Opening) -> io::Result<File> {
         lock(&file)?;
         // Another run may have completed and renamed the file between our opening and our lock. Then what we hold is
         // its finished output, and the partial name is free: try again.
-        let still_named = match Handle::from_path(path) {
-            Ok(named) => named == Handle::from_file(file.try_clone()?)?,
+        let still_named = match system::is_named(path, &file) {
+            Ok(still_named) => still_named,
             Err(error) if error.kind() == io::ErrorKind::NotFound => false,
             Err(error) => return Err(error),
         };
@@ -386,7 +386,7 @@ pub fn check(path: &Path) -> Result<()> {
 
 /// Room that is left on the disk of an output, bytes, where the system tells.
 pub fn room_beside(path: &Path) -> Option<u64> {
-    fs4::available_space(folder_of(path)).ok()
+    system::room_in(folder_of(path)).ok()
 }
 
 /// A name of the disk that an output lies on, the same for all of one disk.
@@ -470,7 +470,7 @@ pub fn folder_of(path: &Path) -> &Path {
 pub fn spool_beside(path: &Path) -> Result<File> {
     // Where the output is a link, its disk is that of the file it leads to.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    tempfile::tempfile_in(folder_of(&target)).map_err(|error| write_error(path, &error))
+    system::nameless(Some(folder_of(&target))).map_err(|error| write_error(path, &error))
 }
 
 /// A temporary file without a name, in the system's folder for such: for what waits before anybody has said where it is
@@ -479,7 +479,7 @@ pub fn spool_beside(path: &Path) -> Result<File> {
 /// # Errors
 /// Those of the system.
 pub fn spool() -> io::Result<File> {
-    tempfile::tempfile()
+    system::nameless(None)
 }
 
 /// Reads a file of at most `most` bytes; a larger one is refused unread.
