@@ -1,6 +1,7 @@
 //! The simulation: model, parameters, state and solver bundled.
 
 mod checkpoint;
+mod settling;
 
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
@@ -14,7 +15,6 @@ use crate::history::{self, DEFAULT_HISTORY_BYTES, Event, History, Past};
 use crate::math::{without_negligible, without_subnormals};
 use crate::model::Model;
 use crate::params::{Change, Params, check_vectors};
-use crate::settle::{SettleOptions, Settled};
 use crate::solver::SymplecticEuler;
 use crate::stability::{self, Limit};
 use crate::state::{Snapshot, State};
@@ -22,12 +22,10 @@ use crate::watch::{self, Watch};
 use crate::workers::{Inline, Workers};
 
 pub use checkpoint::Checkpoint;
+pub use settling::Settling;
 
 /// The step that a state may be at when a run begins: whole numbers up to here are exact in float64.
 const MOST_STEPS: u64 = 1 << 53;
-
-/// Steps between two calls of the progress of settling.
-const STEPS_TO_PROGRESS: u64 = 64;
 
 /// Model, parameters, state and solver bundled: step, frame, settle, change a parameter, rewind, reset, snapshot.
 ///
@@ -183,31 +181,6 @@ impl Simulation {
     /// As [`steps`](Self::steps).
     pub fn frame(&mut self) -> Result<()> {
         self.steps(u64::from(self.params.substeps))
-    }
-
-    /// Brings the scene to rest by kinetic damping (Cundall 1976): it steps on, sets all velocities to zero whenever the
-    /// kinetic energy has passed a peak, and stops when no force beyond the residual remains. Neither step nor time go on.
-    ///
-    /// # Errors
-    /// [`Code::NotSettled`] after too many steps, [`Code::BlewUp`] if it blows up; the state is then as before.
-    pub fn settle(&mut self, options: SettleOptions) -> Result<Settled> {
-        self.settle_with(options, &mut |_| ControlFlow::Continue(()))
-    }
-
-    /// As [`settle`](Self::settle); `progress` hears every 64 steps how far it is and may break off.
-    ///
-    /// # Errors
-    /// As [`settle`](Self::settle), and [`Code::Interrupted`] if `progress` broke off.
-    pub fn settle_with(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-    ) -> Result<Settled> {
-        let events = self.history.events_at(self.current.step()).len();
-        let settled = self.settle_unlogged(options, progress, events)?;
-        self.history.branch_at(self.current.step());
-        self.history.record(self.current.step(), Event::Settle(options));
-        Ok(settled)
     }
 
     /// Changes a parameter from this step on. The same one changed over and over between two steps has been changed once: to
@@ -550,72 +523,6 @@ impl Simulation {
         }
     }
 
-    /// Settles as the next event after so many others at the current step.
-    fn settle_unlogged(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-        events: usize,
-    ) -> Result<Settled> {
-        let before = self.current.copied();
-        let energy_before = self.energy().total();
-        let settled = self.relax(options, progress);
-        let state = self.current.state_mut();
-        if settled.is_err() {
-            *state = before;
-            return settled;
-        }
-        self.placed = None;
-        hold_fixed_points(&self.params, state);
-        // Neither steps nor time have passed; the energy that was taken out is work put in, of negative sign.
-        (state.step, state.time, state.clock) = (before.step, before.time, before.clock);
-        state.ledger = before.ledger;
-        state.ledger.suspect_steps = 0;
-        let energy = self.energy().total();
-        self.current.counters().ledger.work_in += energy - energy_before;
-        self.watch.restart(&mut self.current, &self.params, events + 1);
-        settled
-    }
-
-    fn relax(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-    ) -> Result<Settled> {
-        self.refresh_solver();
-        let allowed = options.residual_force.unwrap_or_else(|| default_residual(&self.params));
-        let mut kinetic_before = 0.0;
-        self.current.stop();
-        let mut residual_force = self.current.solver().residual_force(&self.params);
-        for steps in 0..=options.max_steps {
-            if residual_force <= allowed {
-                return Ok(Settled { steps, residual_force });
-            }
-            if !self.current.advance(&self.params, 1, &*self.workers) {
-                let blow_up = watch::not_finite(&self.model, &self.params, &self.current);
-                return Err(Error::from_blow_up(blow_up));
-            }
-            let kinetic = self.current.kinetic_energy(&*self.workers);
-            if kinetic < kinetic_before {
-                self.current.stop();
-                residual_force = self.current.solver().residual_force(&self.params);
-                kinetic_before = 0.0;
-            } else {
-                kinetic_before = kinetic;
-            }
-            let is_told = steps.is_multiple_of(STEPS_TO_PROGRESS);
-            if is_told && progress(Settled { steps, residual_force }).is_break() {
-                return Err(Error::new(Code::Interrupted, "settling was interrupted"));
-            }
-        }
-        let sentence = format!(
-            "the scene did not come to rest: after {} steps a force of {residual_force:.3e} N remains, over the {allowed:.3e} N \
-             allowed",
-            options.max_steps
-        );
-        Err(Error::new(Code::NotSettled, sentence).with_fix("allow a larger residual force or more steps"))
-    }
-
     /// Goes to a good state, that after so many of the events logged for its step.
     fn restore(&mut self, state: State, params: Arc<Params>, events: usize) {
         if !Arc::ptr_eq(&params, &self.params) {
@@ -654,13 +561,6 @@ fn moves_energy(change: &Change) -> bool {
         change,
         Gravity(_) | Planes(_) | Mass(..) | Pin(..) | Stiffness(..) | RestScale(..) | Cut(..) | Params(_)
     )
-}
-
-/// A thousandth of the largest weight, N.
-fn default_residual(params: &Params) -> f64 {
-    let largest = params.point_mass.iter().fold(0.0f32, |max, &mass| max.max(mass));
-    let weight = f64::from(largest) * params.gravity.as_dvec3().length();
-    if weight > 0.0 { 1e-3 * weight } else { 1e-3 }
 }
 
 /// A state with a solver for it, the first one to be kept.
