@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use sprung::scene::{BUILTIN, MAX_BYTES, Scene};
 use sprung::{Checkpoint, Code, Error, Result};
 use sprung_driver::{Beginning, Kept, Options, Report, Running, Source};
-use sprung_io::checkpoint::{self, Keeper, Resumed, Saved, Stored};
+use sprung_io::checkpoint::{self, Keeper, Saved, Stored};
 use sprung_io::files::PartialFile;
 
 use crate::media::file_stem;
@@ -39,7 +39,7 @@ impl Found {
     pub fn begin(self, options: &Options) -> Result<Beginning> {
         match self {
             Self::Scene(source) => Ok(source.into()),
-            Self::Checkpoint(kept) => Ok((kept.bring)(options)?.into()),
+            Self::Checkpoint(kept) => Ok(kept.bring(options)?.into()),
         }
     }
 }
@@ -150,19 +150,9 @@ fn kept(path: &Path) -> Kept {
     let read = move |options: &Options| {
         let stored = Stored::open(&path)?;
         options.check_memory(stored.memory(), "the checkpoint")?;
-        stored.read()
+        Running::from_saved(stored.read()?, options)
     };
-    Kept { name, bring: Arc::new(move |options| running(read(options), &file, options)) }
-}
-
-/// What goes on with a checkpoint that was read from this file.
-fn running(saved: Result<Saved>, file: &str, options: &Options) -> Result<Running> {
-    let running = saved.and_then(|saved| {
-        let Resumed { scene, params, simulation } =
-            saved.resume(&|needed, what| options.check_memory(needed, what))?;
-        Ok(Running { name: saved.scene_name, scene, params: Arc::new(params), simulation })
-    });
-    running.map_err(|error| error.in_file(file))
+    Kept::elsewhere(name, move |options| read(options).map_err(|error| error.in_file(&file)))
 }
 
 /// Writes a checkpoint of the open scene, and gives its size.
@@ -301,10 +291,7 @@ pub fn dropped(context: &egui::Context) -> Option<Result<(Found, Origin), Refuse
     }
     let found = match file.bytes() {
         Ok(bytes) if checkpoint::is_name(&path) => {
-            let file = name.clone();
-            let read = move || Saved::read_from(&mut &bytes[..], bytes.len() as u64);
-            let bring = Arc::new(move |options: &Options| running(read(), &file, options));
-            Ok(Found::Checkpoint(Kept { name: name.clone(), bring }))
+            Ok(Found::Checkpoint(Kept::in_bytes(name.clone(), &bytes[..])))
         }
         Ok(bytes) => parse_scene(&bytes, &name).map(Found::Scene),
         Err(reason) => {
