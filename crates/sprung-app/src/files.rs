@@ -7,13 +7,12 @@ mod system;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sprung::scene::{BUILTIN, MAX_BYTES, Scene};
 use sprung::{Checkpoint, Code, Error, Result};
-use sprung_driver::{Beginning, Kept, Options, Report, Running, Source};
-use sprung_io::checkpoint::{self, Keeper, Resumed, Saved, Stored};
+use sprung_driver::{Beginning, Kept, Options, Report, Source};
+use sprung_io::checkpoint::{self, Keeper, Saved};
 use sprung_io::files::PartialFile;
 
 use crate::media::file_stem;
@@ -22,6 +21,8 @@ use crate::media::file_stem;
 pub use page::{Dialog, dropped, hand_out};
 #[cfg(not(target_arch = "wasm32"))]
 pub use system::{Dialog, dropped};
+#[cfg(not(target_arch = "wasm32"))]
+use {sprung_driver::Running, sprung_io::checkpoint::Stored};
 
 /// The ending of scene files.
 pub const ENDING: &str = "toml";
@@ -46,7 +47,7 @@ impl Found {
     pub fn begin(self, options: &Options) -> Result<Beginning> {
         match self {
             Self::Scene(source) => Ok(source.into()),
-            Self::Checkpoint(kept) => Ok((kept.bring)(options)?.into()),
+            Self::Checkpoint(kept) => Ok(kept.bring(options)?.into()),
         }
     }
 }
@@ -150,31 +151,33 @@ pub struct Refused {
 /// As [`read_scene`]; what is wrong with a checkpoint comes out when it is wanted.
 pub fn find(path: &Path) -> Result<Found, Refused> {
     if checkpoint::is_name(path) {
-        Ok(Found::Checkpoint(kept(path)))
+        kept(path).map(Found::Checkpoint)
     } else {
         read_scene(path).map(Found::Scene)
     }
 }
 
 /// The checkpoint in a file, to be read by whoever wants it.
-fn kept(path: &Path) -> Kept {
+#[cfg(not(target_arch = "wasm32"))]
+fn kept(path: &Path) -> Result<Kept, Refused> {
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let file = path.display().to_string();
     let path = path.to_owned();
     let read = move |options: &Options| {
-        Stored::open(&path)?.read(&|needed, what| options.check_memory(needed, what))
+        let saved = Stored::open(&path)?.read(&|needed, what| options.check_memory(needed, what))?;
+        Running::from_saved(saved, options)
     };
-    Kept { name, bring: Arc::new(move |options| running(read(options), &file, options)) }
+    Ok(Kept::elsewhere(name, move |options| read(options).map_err(|error| error.in_file(&file))))
 }
 
-/// What goes on with a checkpoint that was read from this file.
-fn running(saved: Result<Saved>, file: &str, options: &Options) -> Result<Running> {
-    let running = saved.and_then(|saved| {
-        let Resumed { scene, params, simulation } =
-            saved.resume(&|needed, what| options.check_memory(needed, what))?;
-        Ok(Running { name: saved.scene_name, scene, params: Arc::new(params), simulation })
-    });
-    running.map_err(|error| error.in_file(file))
+/// The same on a page, whose driver does not see its files: it is given the bytes.
+#[cfg(target_arch = "wasm32")]
+fn kept(path: &Path) -> Result<Kept, Refused> {
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    match sprung_io::files::read_ordinary(path, u64::MAX >> 1) {
+        Ok(bytes) => Ok(Kept::in_bytes(name, bytes)),
+        Err(error) => Err(Refused { error, text: None }),
+    }
 }
 
 /// Writes a checkpoint of the open scene, and gives its size.

@@ -1,5 +1,6 @@
 //! What the page does for the app: `web.js`.
 
+use js_sys::Function;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -13,6 +14,9 @@ extern "C" {
     pub fn download(name: &str, bytes: &[u8]);
     /// Asks for files; `take(names, bytes of each)` is called when they are read.
     pub fn pick(accept: &str, take: &JsValue);
+    /// A worker to simulate in: `take` hears its messages, or why there will be no more, and the function that is given takes
+    /// messages there.
+    pub fn work(take: &JsValue) -> Function;
     /// What the page is called: what it shows.
     pub fn name(title: &str);
     /// Says something to those who do not see the canvas, if it is not empty.

@@ -44,6 +44,15 @@ export function tell(words) {
   if (words) document.getElementById("words").textContent = words;
 }
 
+// A worker to simulate in. `take(bytes)` hears its messages, and `take(undefined, why)` that there will be no more; what is
+// given back takes messages there.
+export function work(take) {
+  const worker = new Worker("worker.js", { type: "module" });
+  worker.onmessage = ({ data }) => (data.ended === undefined ? take(new Uint8Array(data)) : take(undefined, data.ended));
+  worker.onerror = (event) => take(undefined, event.message ?? "its file cannot be loaded");
+  return (bytes) => worker.postMessage(bytes.buffer, [bytes.buffer]);
+}
+
 // The app has drawn its first picture: what was shown while it loaded goes.
 export function ready() {
   document.dispatchEvent(new CustomEvent("sprung-ready"));

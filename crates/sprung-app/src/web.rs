@@ -1,11 +1,14 @@
 //! The door to a page: the same window in a canvas.
 
 use std::panic;
+use std::sync::mpsc::{Receiver, channel};
 
-use eframe::wasm_bindgen::{JsCast, JsValue};
 use eframe::{WebOptions, WebRunner, web_sys};
+use js_sys::Uint8Array;
+use wasm_bindgen::closure::Closure;
+use wasm_bindgen::{JsCast, JsValue};
 use sprung::{Code, Error, Result};
-use sprung_driver::{Driver, Handle, Options};
+use sprung_driver::{Handle, Options, Post, Word};
 
 use crate::app::App;
 use crate::beginning::first;
@@ -69,13 +72,36 @@ fn create(context: &eframe::CreationContext<'_>) -> Result<App> {
             (beginning, origin, refused, None)
         }
     };
-    let mut app = App::new(Handle::page(Driver::with(beginning, options)?), context);
+    let (post, words) = worker(&context.egui_ctx);
+    let mut app = App::new(Handle::remote(beginning, options, post, words)?, context);
     if let Some(view) = view {
         app.look_from(view);
     }
     app.state_mut().files.origin = origin;
     bad_link.into_iter().chain(refused).for_each(|error| app.state_mut().refuse(error));
     Ok(app)
+}
+
+/// A worker to simulate in: where messages go, and where they come from.
+fn worker(context: &egui::Context) -> (Post, Receiver<Word>) {
+    let (heard, words) = channel();
+    let context = context.clone();
+    let take = move |message: Option<Uint8Array>, reason: Option<String>| {
+        let word = match message {
+            Some(message) => Word::Message(message.to_vec()),
+            None => Word::Ended(reason.unwrap_or_default()),
+        };
+        // The page may be going: then nobody hears it.
+        let _ = heard.send(word);
+        context.request_repaint();
+    };
+    let take = Closure::<dyn Fn(Option<Uint8Array>, Option<String>)>::new(take);
+    let tell = page::work(&take.into_js_value());
+    let post = move |message: Vec<u8>| {
+        // What a worker that is gone does not hear, it has said before.
+        let _ = tell.call1(&JsValue::NULL, &Uint8Array::from(&message[..]));
+    };
+    (Box::new(post), words)
 }
 
 /// The word on a link that another version made.

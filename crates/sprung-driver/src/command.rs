@@ -1,12 +1,11 @@
 //! What a front end asks for.
 
 use std::fmt;
-use std::sync::Arc;
 
 use sprung::scene::Scene;
-use sprung::{Change, Params, Result, Simulation, Vec3};
+use sprung::{Change, Vec3};
 
-use crate::options::Options;
+use crate::kept::{Kept, Running};
 
 /// A scene to open.
 #[derive(Clone, Debug)]
@@ -15,38 +14,6 @@ pub struct Source {
     pub name: String,
     /// The scene as it was read.
     pub scene: Scene,
-}
-
-/// A simulation that is under way, to go on with.
-#[derive(Clone)]
-pub struct Running {
-    /// What to call its scene.
-    pub name: String,
-    /// The scene.
-    pub scene: Scene,
-    /// The scene's own parameters.
-    pub params: Arc<Params>,
-    /// The simulation, of a model that the scene was built into.
-    pub simulation: Simulation,
-}
-
-/// Brings a simulation.
-pub type Bring = dyn Fn(&Options) -> Result<Running> + Send + Sync;
-
-/// A simulation that somebody else knows how to bring, such as one in a file.
-#[derive(Clone)]
-pub struct Kept {
-    /// What to call it until it is there.
-    pub name: String,
-    /// Brings it. As that may take a while, the driver asks for it where it works itself; the options say how much memory
-    /// may be taken.
-    pub bring: Arc<Bring>,
-}
-
-impl fmt::Debug for Kept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Kept").field("name", &self.name).finish_non_exhaustive()
-    }
 }
 
 /// What a driver begins with.

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use sprung::{Checkpoint, Energy, Error, Result, Simulation, Vec3};
 
-use crate::command::{Beginning, Command, Fix, Running, Source};
+use crate::command::{Beginning, Command, Fix, Source};
 use crate::fixes;
 use crate::hand::Hand;
 use crate::job::Job;
+use crate::kept::Running;
 use crate::limits::{Limits, NOW_AND_THEN, SMALL};
 use crate::options::Options;
 use crate::pictures::Pictures;
@@ -16,8 +17,8 @@ use crate::playing::Playing;
 use crate::report::{Opened, Report, Timeline, Trouble};
 use crate::run::{Run, let_go};
 use crate::substeps::Auto;
-use crate::supervisor::Supervisor;
 use crate::undo::Undo;
+use crate::wire::Fingerprint;
 
 /// Owns the simulation, does what is asked and plays in real time.
 ///
@@ -101,7 +102,11 @@ impl Driver {
     /// Does what is asked, or begins it, or keeps it until what is under way is done.
     pub fn obey(&mut self, command: Command) {
         self.last = None;
-        if self.must_wait(&command) {
+        if self.breaks_off(&command) {
+            self.job = None;
+            self.keep_waiting(command);
+            self.obey_waiting();
+        } else if self.must_wait(&command) {
             self.keep_waiting(command);
         } else if let Err(error) = self.try_to(command) {
             self.stop_for(error);
@@ -111,25 +116,20 @@ impl Driver {
     /// Real time has passed, s: steps as far as simulated time is due and `may_go_on` says so. Where there is a job to do,
     /// such as seeking, that comes first.
     pub fn advance(&mut self, seconds: f64, may_go_on: &mut dyn FnMut() -> bool) {
-        self.advance_under(seconds, &mut || may_go_on());
-    }
-
-    /// As [`advance`](Self::advance), also with a say in what cannot be done in portions.
-    pub(crate) fn advance_under(&mut self, seconds: f64, supervisor: &mut dyn Supervisor) {
         if seconds > 0.0 && seconds.is_finite() {
             self.clock += seconds;
         }
         if self.job.is_some() {
             self.last = None;
-            self.work(supervisor);
+            self.work(may_go_on);
         } else if self.playing.on {
             self.last = None;
             self.playing.pass(seconds, self.run.params());
-            if let Err(error) = self.play(supervisor) {
+            if let Err(error) = self.play(may_go_on) {
                 self.stop_for(error);
             }
         }
-        self.follow(supervisor);
+        self.follow(may_go_on);
     }
 
     /// The last advance took so many seconds of real time: for [`Report::seconds_per_step`].
@@ -165,6 +165,11 @@ impl Driver {
     /// A fingerprint of the state now: [`Simulation::state_hash`].
     pub fn state_hash(&self) -> u64 {
         self.run.simulation.state_hash()
+    }
+
+    /// What tells whether another driver is at the same point of the same scene.
+    pub(crate) fn fingerprint(&self) -> Fingerprint {
+        Fingerprint { model: self.opened.model.fingerprint(), state: self.state_hash() }
     }
 
     /// How things are now.
@@ -217,7 +222,7 @@ impl Driver {
     fn try_to(&mut self, command: Command) -> Result<()> {
         match command {
             Command::Open(source) => self.open(Beginning::Scene(*source))?,
-            Command::GoOn(kept) => self.open((kept.bring)(&self.options)?.into())?,
+            Command::GoOn(kept) => self.open(kept.bring(&self.options)?.into())?,
             Command::Checkpoint(on) => self.checkpoint = on.then(|| Arc::new(self.run.checkpoint())),
             Command::Play(on) => {
                 self.playing.switch(on);
@@ -243,7 +248,8 @@ impl Driver {
             Command::Release => self.release()?,
             Command::Settle => {
                 self.playing.switch(false);
-                self.job = Some(Job::Settle);
+                let settling = self.run.settling(self.options.settle);
+                self.job = Some(Job::Settle(Box::new(settling)));
             }
             Command::FindSharpLimit => {
                 self.refresh();
@@ -277,12 +283,12 @@ impl Driver {
     }
 
     /// Takes the steps that are due, as far as it may.
-    fn play(&mut self, supervisor: &mut dyn Supervisor) -> Result<()> {
+    fn play(&mut self, may_go_on: &mut dyn FnMut() -> bool) -> Result<()> {
         self.carry(self.playing.steps_due(self.run.params().dt))?;
         loop {
             let dt = self.run.params().dt;
             let due = self.playing.steps_due(dt);
-            if due == 0 || !supervisor.may_go_on() {
+            if due == 0 || !may_go_on() {
                 break;
             }
             self.step(due == 1)?;
@@ -303,11 +309,11 @@ impl Driver {
     }
 
     /// The run that is compared with comes along.
-    fn follow(&mut self, supervisor: &mut dyn Supervisor) {
+    fn follow(&mut self, may_go_on: &mut dyn FnMut() -> bool) {
         let time = self.run.simulation.now().1;
         if let Some(ghost) = self.run.ghost.as_mut().filter(|ghost| self.compares && !ghost.is_at(time)) {
             self.last = None;
-            ghost.follow(time, &mut || supervisor.may_go_on());
+            ghost.follow(time, may_go_on);
         }
     }
 
@@ -322,7 +328,8 @@ impl Driver {
         self.params = self.run.shared_params().clone();
         self.pictures.refresh(&self.run.simulation);
         let is_large = self.opened.model.spring_count() > SMALL;
-        if !(is_large && self.playing.on && self.clock - self.energy_at < NOW_AND_THEN) {
+        let is_busy = self.playing.on || self.job.is_some();
+        if !(is_large && is_busy && self.clock - self.energy_at < NOW_AND_THEN) {
             self.energy = self.run.energy();
             self.energy_at = self.clock;
         }
@@ -339,6 +346,12 @@ impl Driver {
     pub(crate) fn clear_trouble(&mut self) {
         self.trouble = None;
         self.fixes.clear();
+    }
+
+    /// Something cannot be done.
+    pub(crate) fn refuse(&mut self, error: Error) {
+        self.last = None;
+        self.stop_for(error);
     }
 
     /// Something went wrong. What could not be done has not been done; a run that blew up is paused at its last good state,

@@ -1,11 +1,14 @@
 //! How a front end holds a driver, wherever that works.
 
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
 
 use web_time::{Duration, Instant};
 
-use crate::command::Command;
+use crate::command::{Beginning, Command};
 use crate::driver::Driver;
+use crate::options::Options;
+use crate::remote::{Post, Remote, Word};
 use crate::report::Report;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::thread::Thread;
@@ -24,6 +27,8 @@ enum Place {
     Page(Box<Page>),
     #[cfg(not(target_arch = "wasm32"))]
     Thread(Thread),
+    /// Where no memory is shared with it, such as in a page's worker.
+    Remote(Box<Remote>),
 }
 
 /// A driver on a page.
@@ -55,6 +60,21 @@ impl Handle {
         Ok(Self(Place::Thread(Thread::start(driver, wake)?)))
     }
 
+    /// A driver in a [`Host`](crate::Host) at the far end of a wire, such as in a page's worker. `post` takes messages there:
+    /// the first is what the host is made of. `words` come from there. What it begins with is built here, too, for the first
+    /// report.
+    ///
+    /// # Errors
+    /// As [`Driver::with`].
+    pub fn remote(
+        beginning: impl Into<Beginning>,
+        options: Options,
+        post: Post,
+        words: Receiver<Word>,
+    ) -> sprung::Result<Self> {
+        Ok(Self(Place::Remote(Box::new(Remote::new(beginning.into(), options, post, words)?))))
+    }
+
     /// Asks for something. Inline it is done at once, else soon.
     pub fn send(&mut self, command: Command) {
         match &mut self.0 {
@@ -65,10 +85,11 @@ impl Handle {
             Place::Page(page) => page.driver.obey(command),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(thread) => thread.send(command),
+            Place::Remote(remote) => remote.send(&command),
         }
     }
 
-    /// Real time has passed, s. Inline and on a page, this is when the work is done; a thread has its own clock. As there, what
+    /// Real time has passed, s. Inline and on a page, this is when the work is done; elsewhere the driver has its own clock. As there, what
     /// went by on a page before something began to play is not owed to it.
     pub fn pass(&mut self, seconds: f64) {
         match &mut self.0 {
@@ -76,6 +97,7 @@ impl Handle {
             Place::Page(page) => page.pass(seconds),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(_) => {}
+            Place::Remote(_) => {}
         }
     }
 
@@ -86,6 +108,7 @@ impl Handle {
             Place::Page(page) => page.driver.report(),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(thread) => thread.report(),
+            Place::Remote(remote) => remote.report(),
         }
     }
 }

@@ -1,15 +1,14 @@
-//! Work that takes longer than a moment: done in portions, or under somebody's eyes.
+//! Work that takes longer than a moment: done in portions.
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use sprung::{Code, Error, Params, Result, Settled, significant};
+use sprung::{Code, Error, Params, Result, Settling, significant};
 
 use crate::command::Command;
 use crate::driver::Driver;
 use crate::run::go_towards;
 use crate::settings::without_hands;
-use crate::supervisor::Supervisor;
 
 /// Commands that wait while a job is under way, at the most: nobody presses that many buttons.
 const MOST_WAITING: usize = 1000;
@@ -24,41 +23,46 @@ pub(crate) enum Job {
     /// On the way to a recorded step, to go on from there with these parameters.
     Rewind { from: u64, to: u64, params: Box<Params> },
     /// Bringing the scene to rest.
-    Settle,
+    Settle(Box<Settling>),
 }
 
 impl Job {
     /// What it does and how far it is, for people.
     pub fn describe(&self, now: u64) -> String {
         let percent = |done: u64, all: u64| (100.0 * done.min(all) as f64 / all.max(1) as f64) as u64;
-        match *self {
-            Self::Steps { left, of } => format!("stepping, {} %", percent(of - left, of)),
-            Self::Seek { from, to } | Self::Rewind { from, to, .. } => {
+        match self {
+            &Self::Steps { left, of } => format!("stepping, {} %", percent(of - left, of)),
+            &Self::Seek { from, to } | &Self::Rewind { from, to, .. } => {
                 let all = from.abs_diff(to);
                 format!("replaying, {} %", percent(all.saturating_sub(now.abs_diff(to)), all))
             }
-            Self::Settle => "settling".to_owned(),
+            Self::Settle(settling) => {
+                let so_far = settling.so_far();
+                let force = significant(so_far.residual_force);
+                format!("settling: {} steps, {force} N left", so_far.steps)
+            }
         }
     }
 }
 
 impl Driver {
+    /// Whether a command breaks off what is under way, and all is as before that.
+    pub(crate) fn breaks_off(&self, command: &Command) -> bool {
+        matches!(self.job, Some(Job::Settle(_))) && !leaves_alone(command)
+    }
+
     /// Whether a command has to wait for what is under way: it is about the state that this will lead to.
     pub(crate) fn must_wait(&self, command: &Command) -> bool {
         let takes_over = matches!(command, Command::Open(_) | Command::GoOn(_) | Command::Reset);
         let is_about_the_state = !leaves_alone(command);
-        let newer_seek = matches!(
-            (&self.job, command),
-            (Some(Job::Seek { .. } | Job::Steps { .. } | Job::Settle), Command::Seek(_))
-        );
-        let breaks_off = matches!(
-            (&self.job, command),
-            (Some(Job::Steps { .. } | Job::Settle), Command::Play(_) | Command::Settle)
-        );
+        let newer_seek =
+            matches!((&self.job, command), (Some(Job::Seek { .. } | Job::Steps { .. }), Command::Seek(_)));
+        let goes_before =
+            matches!((&self.job, command), (Some(Job::Steps { .. }), Command::Play(_) | Command::Settle));
         self.job.is_some()
             && is_about_the_state
             && !takes_over
-            && !(self.waiting.is_empty() && (newer_seek || breaks_off))
+            && !(self.waiting.is_empty() && (newer_seek || goes_before))
     }
 
     pub(crate) fn keep_waiting(&mut self, command: Command) {
@@ -112,18 +116,20 @@ impl Driver {
     }
 
     /// Works on the job, and when it is done on what waited for it.
-    pub(crate) fn work(&mut self, supervisor: &mut dyn Supervisor) {
-        match self.portion(supervisor) {
+    pub(crate) fn work(&mut self, may_go_on: &mut dyn FnMut() -> bool) {
+        match self.portion(may_go_on) {
             Ok(false) => return,
             Ok(true) => self.job = None,
             Err(error) => {
                 self.job = None;
-                // Whoever broke it off knows.
-                if error.code() != Code::Interrupted {
-                    self.stop_for(error);
-                }
+                self.stop_for(error);
             }
         }
+        self.obey_waiting();
+    }
+
+    /// Does what waited for a job, until that is another one.
+    pub(crate) fn obey_waiting(&mut self) {
         while self.job.is_none()
             && let Some(command) = self.waiting.pop_front()
         {
@@ -132,16 +138,16 @@ impl Driver {
     }
 
     /// A portion of the job; gives whether it is done.
-    fn portion(&mut self, supervisor: &mut dyn Supervisor) -> Result<bool> {
+    fn portion(&mut self, may_go_on: &mut dyn FnMut() -> bool) -> Result<bool> {
         match self.job.take() {
             None => Ok(true),
-            Some(Job::Steps { left, of }) => self.some_steps(left, of, supervisor),
+            Some(Job::Steps { left, of }) => self.some_steps(left, of, may_go_on),
             Some(Job::Seek { from, to }) => {
                 self.job = Some(Job::Seek { from, to });
-                self.go(to, supervisor)
+                self.go(to, may_go_on)
             }
             Some(Job::Rewind { from, to, params }) => {
-                let is_there = self.go(to, supervisor)?;
+                let is_there = self.go(to, may_go_on)?;
                 if is_there {
                     // Even with the same parameters this is a new run: what blew up once would only be replayed.
                     self.run.part();
@@ -153,13 +159,13 @@ impl Driver {
                 }
                 Ok(is_there)
             }
-            Some(Job::Settle) => self.settle(supervisor).map(|()| true),
+            Some(Job::Settle(settling)) => self.settle(*settling, may_go_on),
         }
     }
 
-    fn some_steps(&mut self, mut left: u64, of: u64, supervisor: &mut dyn Supervisor) -> Result<bool> {
+    fn some_steps(&mut self, mut left: u64, of: u64, may_go_on: &mut dyn FnMut() -> bool) -> Result<bool> {
         self.carry(left)?;
-        while left > 0 && supervisor.may_go_on() {
+        while left > 0 && may_go_on() {
             self.step(left == 1)?;
             left -= 1;
         }
@@ -169,26 +175,28 @@ impl Driver {
         Ok(left == 0)
     }
 
-    fn go(&mut self, to: u64, supervisor: &mut dyn Supervisor) -> Result<bool> {
-        let is_there = go_towards(&mut self.run.simulation, to, &mut || supervisor.may_go_on());
+    fn go(&mut self, to: u64, may_go_on: &mut dyn FnMut() -> bool) -> Result<bool> {
+        let is_there = go_towards(&mut self.run.simulation, to, may_go_on);
         self.jumped();
         is_there
     }
 
-    fn settle(&mut self, supervisor: &mut dyn Supervisor) -> Result<()> {
-        let options = self.options.settle;
-        let progress = &mut |so_far: Settled| {
-            let force = significant(so_far.residual_force);
-            let what = format!("settling: {} steps, {force} N left", so_far.steps);
-            if supervisor.may_keep_busy(&what) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        };
-        self.run.settle(options, progress)?;
-        self.run.mark("settled");
-        self.jumped();
-        if self.hand.take().is_some() {
-            self.choose_substeps()?;
+    fn settle(&mut self, settling: Settling, may_go_on: &mut dyn FnMut() -> bool) -> Result<bool> {
+        match settling.go_on(may_go_on)? {
+            ControlFlow::Continue(rest) => {
+                self.job = Some(Job::Settle(Box::new(rest)));
+                Ok(false)
+            }
+            ControlFlow::Break(simulation) => {
+                self.run.settled(simulation);
+                self.run.mark("settled");
+                self.jumped();
+                if self.hand.take().is_some() {
+                    self.choose_substeps()?;
+                }
+                Ok(true)
+            }
         }
-        Ok(())
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sprung::scene::Scene;
 use sprung::stability::Limit;
-use sprung::{BlowUp, Checkpoint, Energy, Error, Model, Params, Snapshot, Vec3};
+use sprung::{BlowUp, Checkpoint, Code, Energy, Error, Model, Params, Snapshot, Vec3};
 
 use crate::command::{Fix, Pace, Probe};
 use crate::samples::Samples;
@@ -41,7 +41,7 @@ pub struct Report {
     pub blend: f64,
     /// The force on every point, N, if wanted.
     pub forces: Option<Arc<Vec<Vec3>>>,
-    /// The energy of the newest step; of a large model that plays, of a step up to a third of a second ago.
+    /// The energy of the newest step; of a large model that moves, of a step up to a third of a second ago.
     pub energy: Energy,
     /// Whether the ledger has been on since the first step, so that its sums balance.
     pub ledger_is_whole: bool,
@@ -79,6 +79,18 @@ pub struct Report {
     pub checkpoint: Option<Arc<Checkpoint>>,
     /// What it is busy with, where that takes longer than a moment, such as "replaying".
     pub busy: Option<String>,
+}
+
+impl Report {
+    /// As this one, but paused for good: whoever drives the simulation has gone, for this reason.
+    pub(crate) fn ended(&self, reason: &str) -> Self {
+        let error = Error::new(Code::Unsupported, format!("the simulation has stopped for good: {reason}"))
+            .with_fix(
+                "save what you need and start the program anew; this is an error in it, please report it",
+            );
+        let trouble = Some(Trouble::Refused(error));
+        Self { playing: false, speed: 0.0, busy: None, trouble, ..self.clone() }
+    }
 }
 
 /// How large dt may be, s.

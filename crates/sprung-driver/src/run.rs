@@ -4,11 +4,10 @@
 //! done then; beyond the newest, steps are new. Doing anything new in the past makes a branch there: what lay beyond is
 //! dropped from the run, and kept as a [`Ghost`] to compare with.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use sprung::{
-    Change, Checkpoint, Energy, Params, PointReading, Result, SettleOptions, Settled, Simulation,
+    Change, Checkpoint, Energy, Params, PointReading, Result, SettleOptions, Settling, Simulation,
     SpringReading,
 };
 
@@ -190,23 +189,22 @@ impl Run {
         checkpoint
     }
 
-    /// Brings the scene to rest, with no hand at it; in the past as a branch.
-    ///
-    /// # Errors
-    /// If it does not come to rest, or `progress` broke it off: then nothing has happened.
-    pub fn settle(
-        &mut self,
-        options: SettleOptions,
-        progress: &mut dyn FnMut(Settled) -> ControlFlow<()>,
-    ) -> Result<()> {
-        // On a clone, as even letting go is something done.
-        let mut settled = self.simulation.clone();
-        let_go(&mut settled);
-        settled.settle_with(options, progress)?;
+    /// Begins to bring the scene to rest, with no hand at it: on a clone, as even letting go is something done.
+    pub fn settling(&self, options: SettleOptions) -> Settling {
+        let mut simulation = self.simulation.clone();
+        let_go(&mut simulation);
+        simulation.settling(options)
+    }
+
+    /// The scene has come to rest; in the past as a branch.
+    pub fn settled(&mut self, mut simulation: Simulation) {
         self.part();
-        self.simulation = settled;
+        // It may have been switched meanwhile.
+        if simulation.keeps_ledger() != self.ledger {
+            simulation.keep_ledger(self.ledger);
+        }
+        self.simulation = simulation;
         self.sample_is_stale = true;
-        Ok(())
     }
 
     /// Back to the first state, under the parameters of now.

@@ -79,6 +79,10 @@ impl Samples {
                 return;
             }
         }
+        self.append(sample);
+    }
+
+    fn append(&mut self, sample: Sample) {
         match self.pieces.last_mut() {
             Some(last) if last.len() < PIECE => Arc::make_mut(last).push(sample),
             _ => {
@@ -100,6 +104,37 @@ impl Samples {
             }
             self.pieces.pop();
         }
+    }
+
+    /// The first step of which there can be one.
+    pub(crate) fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// With how many samples both begin. What is shared is not looked at.
+    pub(crate) fn in_common_with(&self, other: &Self) -> usize {
+        let pairs = || self.pieces.iter().zip(&other.pieces);
+        let shared = pairs().take_while(|(mine, theirs)| Arc::ptr_eq(mine, theirs)).count();
+        let equal = pairs().nth(shared).map_or(0, |(mine, theirs)| {
+            mine.iter().zip(&**theirs).take_while(|(mine, theirs)| mine == theirs).count()
+        });
+        self.len().min(shared * PIECE + equal)
+    }
+
+    /// So many of these samples, and then others. `None` if there are not so many.
+    pub(crate) fn continued(&self, kept: usize, first: u64, every: u64, more: Vec<Sample>) -> Option<Self> {
+        if kept > self.len() || every == 0 {
+            return None;
+        }
+        let mut pieces = self.pieces[..kept.div_ceil(PIECE)].to_vec();
+        if let Some(last) = pieces.last_mut().filter(|_| !kept.is_multiple_of(PIECE))
+            && last.len() > kept % PIECE
+        {
+            Arc::make_mut(last).truncate(kept % PIECE);
+        }
+        let mut samples = Self { pieces, first, every };
+        more.into_iter().for_each(|sample| samples.append(sample));
+        Some(samples)
     }
 
     fn thin_out(&mut self) {

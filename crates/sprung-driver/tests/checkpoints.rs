@@ -5,8 +5,8 @@ mod common;
 use std::sync::Arc;
 
 use sprung::scene::Scene;
-use sprung::{Change, Code, Error, Result, Vec3};
-use sprung_driver::{Command, Driver, Kept, Options, Pull, Report, Running, Source, Trouble};
+use sprung::{Change, Code, Error, Vec3};
+use sprung_driver::{Command, Driver, Kept, Pull, Report, Source, Trouble};
 
 use common::{check, edit, kept, running, source};
 
@@ -177,11 +177,10 @@ fn a_moment_is_kept_until_it_is_let_go_or_another_scene_is_opened() {
 #[test]
 fn what_cannot_be_gone_on_with_changes_nothing() {
     let refused = || Error::new(Code::Unreadable, "is damaged").in_file("x.sprung");
-    let bring = Arc::new(move |_: &Options| -> Result<Running> { Err(refused()) });
     let mut here = driver(source("chain"));
     play(&mut here, 20);
     let before = here.report();
-    let after = obey(&mut here, [Command::GoOn(Kept { name: "x.sprung".to_owned(), bring })]);
+    let after = obey(&mut here, [Command::GoOn(Kept::elsewhere("x.sprung", move |_| Err(refused())))]);
     assert!(matches!(&after.trouble, Some(Trouble::Refused(error)) if *error == refused()));
     assert_eq!((after.opened.serial, after.playing, &after.now), (1, true, &before.now));
 }

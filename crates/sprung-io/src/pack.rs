@@ -6,6 +6,7 @@
 mod mesh;
 mod params;
 
+use bytemuck::{AnyBitPattern, NoUninit};
 use sprung::{Code, Error, Result, Vec3};
 
 /// Bytes being written.
@@ -16,6 +17,11 @@ impl Pack {
     /// No bytes yet.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// No bytes yet, and room for so many.
+    pub fn with_capacity(bytes: usize) -> Self {
+        Self(Vec::with_capacity(bytes))
     }
 
     /// What was written.
@@ -71,29 +77,36 @@ impl Pack {
     /// A count, and so many numbers.
     pub fn f32s(&mut self, values: &[f32]) -> &mut Self {
         self.u64(values.len() as u64);
-        self.0.reserve(4 * values.len());
-        values.iter().fold(self, |pack, &value| pack.f32(value))
+        self.numbers(values, |pack, &value| _ = pack.f32(value))
     }
 
     /// A count, and so many numbers.
     pub fn u32s(&mut self, values: &[u32]) -> &mut Self {
         self.u64(values.len() as u64);
-        self.0.reserve(4 * values.len());
-        values.iter().fold(self, |pack, &value| pack.u32(value))
+        self.numbers(values, |pack, &value| _ = pack.u32(value))
     }
 
     /// A count, and so many numbers.
     pub fn f64s(&mut self, values: &[f64]) -> &mut Self {
         self.u64(values.len() as u64);
-        self.0.reserve(8 * values.len());
-        values.iter().fold(self, |pack, &value| pack.f64(value))
+        self.numbers(values, |pack, &value| _ = pack.f64(value))
     }
 
     /// A count, and so many vectors.
     pub fn vec3s(&mut self, vectors: &[Vec3]) -> &mut Self {
         self.u64(vectors.len() as u64);
-        self.0.reserve(12 * vectors.len());
-        vectors.iter().fold(self, |pack, &vector| pack.vec3(vector))
+        self.numbers(vectors, |pack, &vector| _ = pack.vec3(vector))
+    }
+
+    /// All of them in one go where they lie in memory as they are written.
+    fn numbers<T: NoUninit>(&mut self, values: &[T], one: impl Fn(&mut Self, &T)) -> &mut Self {
+        if cfg!(target_endian = "little") {
+            self.0.extend_from_slice(bytemuck::cast_slice(values));
+        } else {
+            self.0.reserve(size_of_val(values));
+            values.iter().for_each(|value| one(self, value));
+        }
+        self
     }
 
     /// A count, and so many answers, a byte each.
@@ -218,7 +231,7 @@ impl<'a> Unpack<'a> {
     /// # Errors
     /// [`Code::Unreadable`].
     pub fn f32s(&mut self) -> Result<Vec<f32>> {
-        Ok(self.several(4)?.chunks_exact(4).map(f32_of).collect())
+        Ok(numbers(self.several(4)?, f32_of))
     }
 
     /// A count, and so many numbers.
@@ -226,8 +239,7 @@ impl<'a> Unpack<'a> {
     /// # Errors
     /// [`Code::Unreadable`].
     pub fn u32s(&mut self) -> Result<Vec<u32>> {
-        let value = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-        Ok(self.several(4)?.chunks_exact(4).map(value).collect())
+        Ok(numbers(self.several(4)?, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
     }
 
     /// A count, and so many numbers.
@@ -235,9 +247,8 @@ impl<'a> Unpack<'a> {
     /// # Errors
     /// [`Code::Unreadable`].
     pub fn f64s(&mut self) -> Result<Vec<f64>> {
-        let bytes = self.several(8)?;
         let value = |b: &[u8]| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]);
-        Ok(bytes.chunks_exact(8).map(value).collect())
+        Ok(numbers(self.several(8)?, value))
     }
 
     /// A count, and so many vectors.
@@ -245,9 +256,8 @@ impl<'a> Unpack<'a> {
     /// # Errors
     /// [`Code::Unreadable`].
     pub fn vec3s(&mut self) -> Result<Vec<Vec3>> {
-        let bytes = self.several(12)?;
         let vector = |b: &[u8]| Vec3::new(f32_of(&b[..4]), f32_of(&b[4..8]), f32_of(&b[8..]));
-        Ok(bytes.chunks_exact(12).map(vector).collect())
+        Ok(numbers(self.several(12)?, vector))
     }
 
     /// A count, and so many answers.
@@ -256,6 +266,15 @@ impl<'a> Unpack<'a> {
     /// [`Code::Unreadable`].
     pub fn bools(&mut self) -> Result<Vec<bool>> {
         self.several(1)?.iter().map(|&byte| truth(byte)).collect()
+    }
+}
+
+/// Whole numbers of these bytes: in one go where they lie in memory as they are written.
+fn numbers<T: AnyBitPattern + NoUninit>(bytes: &[u8], one: impl Fn(&[u8]) -> T) -> Vec<T> {
+    if cfg!(target_endian = "little") {
+        bytemuck::pod_collect_to_vec(bytes)
+    } else {
+        bytes.chunks_exact(size_of::<T>()).map(one).collect()
     }
 }
 

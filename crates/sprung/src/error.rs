@@ -42,6 +42,28 @@ pub enum Code {
     Interrupted,
 }
 
+impl Code {
+    /// All of them. A code keeps its place in this list: what is new comes last.
+    pub const ALL: [Self; 16] = [
+        Self::Syntax,
+        Self::WrongType,
+        Self::MissingField,
+        Self::UnknownKey,
+        Self::OutOfRange,
+        Self::NotFound,
+        Self::Duplicate,
+        Self::Conflict,
+        Self::TooLarge,
+        Self::Unreadable,
+        Self::Unwritable,
+        Self::Unsupported,
+        Self::NoWindow,
+        Self::NotSettled,
+        Self::BlewUp,
+        Self::Interrupted,
+    ];
+}
+
 /// Where it went wrong. Every part is optional; lines and columns count from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
@@ -187,3 +209,16 @@ fn visible(text: &str) -> String {
 }
 
 impl std::error::Error for Error {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_codes_has_each_at_its_place() {
+        for (place, code) in Code::ALL.into_iter().enumerate() {
+            assert_eq!(code as usize, place, "{code:?}");
+        }
+        assert_eq!(Code::Interrupted as usize + 1, Code::ALL.len(), "a code is missing");
+    }
+}

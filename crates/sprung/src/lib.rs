@@ -38,7 +38,7 @@ pub use model::{Body, Joint, Model, Surface, SurfaceKind, SurfaceVertices, Weigh
 pub use params::{Change, Grab, Params};
 pub use probe::{PointReading, SpringReading};
 pub use settle::{SettleOptions, Settled};
-pub use simulation::{Checkpoint, MOST_STEPS, Simulation};
+pub use simulation::{Checkpoint, MOST_STEPS, Settling, Simulation};
 pub use state::{Moment, Snapshot, State};
 pub use text::significant;
 pub use watch::{BlowUp, Cause, SAFE_SHARE};

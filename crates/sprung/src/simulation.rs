@@ -24,6 +24,7 @@ use crate::workers::Workers;
 pub use beginning::MOST_STEPS;
 use changing::Placed;
 pub use checkpoint::Checkpoint;
+pub use settling::Settling;
 
 /// Model, parameters, state and solver bundled: step, frame, settle, change a parameter, rewind, reset, snapshot.
 ///

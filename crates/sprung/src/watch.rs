@@ -62,7 +62,7 @@ pub struct BlowUp {
     /// The step length in use, s.
     pub dt: f64,
     /// See [`suggested_damping_scale`](Self::suggested_damping_scale), before rounding.
-    damping_scale: Option<f64>,
+    pub damping_scale: Option<f64>,
     /// The certified limit on dt at the last good state, s.
     pub dt_limit_certified: Option<f64>,
     /// The limit on dt that holds in every configuration, s.

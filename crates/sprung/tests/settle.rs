@@ -1,5 +1,7 @@
 //! Settling in the solver's own layout is what plain code in the user's order makes of it, bit for bit.
 
+use std::ops::ControlFlow;
+
 use sprung::scene::Scene;
 use sprung::solver::SymplecticEuler;
 use sprung::{Energy, Inline, Params, SettleOptions, Simulation, State, Vec3};
@@ -50,4 +52,39 @@ fn settling_is_what_plain_code_makes_of_it() {
         let now = simulation.state();
         assert!(now.position == state.position && now.position_low == state.position_low, "{name}");
     }
+}
+
+/// However small the portions, and what was done is in the log.
+#[test]
+fn in_portions_it_settles_to_the_same_bits() {
+    let mut at_once = Scene::builtin("jelly").and_then(|scene| scene.simulation()).expect("it is built in");
+    at_once.steps(30).expect("it is stable");
+    let begun = at_once.clone();
+    let told = at_once.settle(SettleOptions::default()).expect("it comes to rest");
+    for portion in [1, 7, 1000] {
+        let mut settling = begun.clone().settling(SettleOptions::default());
+        let mut portions = 0;
+        let mut settled = loop {
+            portions += 1;
+            let mut left = portion;
+            let may_go_on = &mut || {
+                left -= 1;
+                left >= 0
+            };
+            match settling.go_on(may_go_on).expect("it comes to rest") {
+                ControlFlow::Continue(rest) => settling = rest,
+                ControlFlow::Break(simulation) => break simulation,
+            }
+            assert_eq!(settling.so_far().steps, portions * portion as u64);
+        };
+        assert_eq!(portions, told.steps.div_ceil(portion as u64));
+        assert_eq!((settled.state(), settled.log()), (at_once.state(), at_once.log()));
+        let mut at_once = at_once.clone();
+        [&mut settled, &mut at_once].map(|simulation| simulation.steps(50).expect("it is stable"));
+        assert_eq!(settled.state(), at_once.state());
+    }
+    let never = SettleOptions { residual_force: Some(0.0), max_steps: 10 };
+    let failed =
+        begun.clone().settling(never).go_on(&mut || true).map(|_| ()).expect_err("10 steps are too few");
+    assert_eq!(Some(failed), begun.clone().settle(never).err());
 }

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::task::{Context, Poll, Wake, Waker};
 
 use sprung::{Code, Error};
-use sprung_driver::{Kept, Options, Source};
-use sprung_io::checkpoint::{self, Saved};
+use sprung_driver::{Kept, Source};
+use sprung_io::checkpoint;
 
-use super::{Found, Origin, Refused, Wanted, find, parse_scene, running};
+use super::{Found, Origin, Refused, Wanted, find, parse_scene};
 
 /// A dialog of the system that is open. It never holds the window up: ask it each frame.
 ///
@@ -60,10 +60,7 @@ pub fn dropped(context: &egui::Context) -> Option<Result<(Found, Origin), Refuse
     }
     let found = match file.bytes() {
         Ok(bytes) if checkpoint::is_name(&path) => {
-            let file = name.clone();
-            let read = move || Saved::read_from(&mut &bytes[..], bytes.len() as u64);
-            let bring = Arc::new(move |options: &Options| running(read(), &file, options));
-            Ok(Found::Checkpoint(Kept { name: name.clone(), bring }))
+            Ok(Found::Checkpoint(Kept::in_bytes(name.clone(), &bytes[..])))
         }
         Ok(bytes) => parse_scene(&bytes, &name).map(Found::Scene),
         Err(reason) => {

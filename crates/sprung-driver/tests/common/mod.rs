@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses some of it")]
 
+pub mod acts;
+
 use std::sync::Arc;
 
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
@@ -48,7 +50,7 @@ pub fn edit(label: &str, change: Change) -> Command {
 pub fn kept(report: &Report) -> Kept {
     let (name, scene) = (report.opened.name.clone(), report.opened.scene.clone());
     let checkpoint = report.checkpoint.clone().expect("a moment is kept");
-    Kept { name: name.clone(), bring: Arc::new(move |_| running(&name, &scene, &checkpoint)) }
+    Kept::elsewhere(name.clone(), move |_| running(&name, &scene, &checkpoint))
 }
 
 /// A checkpoint of a scene, taken up again.

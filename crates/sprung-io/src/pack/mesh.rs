@@ -10,7 +10,7 @@ use super::{Pack, Unpack};
 
 impl Pack {
     /// A count, and for each mesh the name of its file and what it holds.
-    pub(crate) fn meshes(&mut self, meshes: &[(String, Arc<Mesh>)]) -> &mut Self {
+    pub fn meshes(&mut self, meshes: &[(String, Arc<Mesh>)]) -> &mut Self {
         self.u64(meshes.len() as u64);
         meshes.iter().fold(self, |pack, (name, mesh)| pack.text(name).mesh(mesh))
     }
@@ -37,7 +37,7 @@ impl Unpack<'_> {
     ///
     /// # Errors
     /// [`Code::Unreadable`], and as [`Mesh::check`].
-    pub(crate) fn meshes(&mut self) -> Result<Vec<(String, Arc<Mesh>)>> {
+    pub fn meshes(&mut self) -> Result<Vec<(String, Arc<Mesh>)>> {
         let mut meshes = Vec::new();
         for _ in 0..self.u64()? {
             let name = self.text()?.to_owned();

@@ -18,7 +18,7 @@ impl Pack {
     }
 
     /// All of them but the arrays over points and springs.
-    pub(crate) fn short_params(&mut self, params: &Params) -> &mut Self {
+    pub fn short_params(&mut self, params: &Params) -> &mut Self {
         self.f64(params.dt).u32(params.substeps).vec3(params.gravity);
         self.u64(params.planes.len() as u64);
         for plane in &params.planes {
@@ -65,7 +65,7 @@ impl Unpack<'_> {
     }
 
     /// All of them but the arrays over points and springs, which are empty.
-    pub(crate) fn short_params(&mut self) -> Result<Params> {
+    pub fn short_params(&mut self) -> Result<Params> {
         let (dt, substeps, gravity) = (self.f64()?, self.u32()?, self.vec3()?);
         // Collected one by one: a count is no reason to take memory.
         let planes = (0..self.u64()?).map(|_| self.plane()).collect::<Result<_>>()?;

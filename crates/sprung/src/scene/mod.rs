@@ -32,6 +32,7 @@ pub use builtin::{BUILTIN, Builtin, Kind, STARTER};
 pub use check::MAX_POINTS;
 pub use choices::{Dt, Numbers, OneOrEach, Pin, PinWhere, Region};
 pub use mesh::{Cloth, MeshFile, Net, Soft};
+pub use source::Provenance;
 pub use suggest::closest;
 pub use types::{
     Block, Body, Chain, Exception, Force, Grid, GridPlane, Joint, Plane, Rotation, Scene, Springs,

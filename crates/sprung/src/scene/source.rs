@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::read::ReadError;
 use super::suggest::{one_line, shortened};
+use super::types::Scene;
 use crate::error::{Code, Error};
 
 /// The source of a scene, if it has one. It is no part of what the scene says: any two are equal.
@@ -31,6 +32,35 @@ struct Source {
 struct Override {
     field: String,
     argument: String,
+}
+
+/// Where a scene came from, for whoever hands the scene on to where its errors are to be found as here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Provenance {
+    /// The name that errors give the file.
+    pub file: String,
+    /// What it says.
+    pub text: Arc<str>,
+    /// Fields that were set since, each with the argument that said so, oldest first.
+    pub set: Vec<(String, String)>,
+}
+
+impl Scene {
+    /// Where it came from, if it was read from a text.
+    pub fn provenance(&self) -> Option<Provenance> {
+        let Source { file, text, overrides } = &**self.origin.0.as_ref()?;
+        let set = overrides.iter().map(|change| (change.field.clone(), change.argument.clone()));
+        Some(Provenance { file: file.clone(), text: text.clone(), set: set.collect() })
+    }
+
+    /// The scene, with errors that are found late quoting this source.
+    pub fn with_provenance(mut self, from: Option<Provenance>) -> Self {
+        self.origin = Origin(from.map(|Provenance { file, text, set }| {
+            let overrides = set.into_iter().map(|(field, argument)| Override { field, argument });
+            Arc::new(Source { file: one_line(&file), text, overrides: overrides.collect() })
+        }));
+        self
+    }
 }
 
 impl Origin {
