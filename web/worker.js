@@ -14,7 +14,7 @@ let isDue = false;
 let hasEnded = false;
 
 // Messages may come before the module has: they wait for it, and for each other.
-let ready = init();
+let ready = init({ module_or_path: new URL("engine_bg.wasm", import.meta.url) });
 self.onmessage = ({ data }) => {
   ready = ready.then(() => hear(new Uint8Array(data))).catch(end);
 };
