@@ -40,6 +40,8 @@ pub(crate) fn first(
 
 #[cfg(test)]
 mod tests {
+    use sprung::Code;
+
     use super::*;
 
     #[test]

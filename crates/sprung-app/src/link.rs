@@ -265,11 +265,9 @@ mod tests {
 
         #[test]
         fn a_changed_link_is_read_or_refused(at in 0usize..200, with in 0u8..128) {
-            let mut link = link(&{
-                let mut driver = opened("chain");
-                driver.obey(Command::Edit(Edit::new("dt", vec![Change::Dt(0.003)])));
-                driver.report()
-            }, &VIEW).expect("it is short").into_bytes();
+            let mut driver = opened("chain");
+            driver.obey(Command::Edit(Edit::new("dt", vec![Change::Dt(0.003)])));
+            let mut link = link(&driver.report(), &VIEW).expect("it is short").into_bytes();
             let at = at % link.len();
             link[at] = with;
             let _ = read(&String::from_utf8(link).expect("it is ASCII"));
