@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use sprung::Change;
 use sprung::scene::Scene;
-use sprung_driver::{Command, Driver, Edit, Handle, Options, Report, Source, Trouble, Word};
+use sprung_driver::{Command, Driver, Edit, Handle, Options, Report, Source, Timeline, Trouble, Word};
 
 /// Longer than anything here takes on any machine: only a hang gets there.
 const HANG: Duration = Duration::from_secs(120);
@@ -131,7 +131,9 @@ fn a_driver_in_webassembly_has_the_same_bits() {
         assert_eq!((there.energy, &there.params), (here.energy, &here.params));
         let samples = |report: &Report| report.samples.iter().cloned().collect::<Vec<_>>();
         assert_eq!(samples(&there), samples(&here));
-        assert_eq!((&there.undo, &there.timeline), (&here.undo, &here.timeline));
+        // But for the memory that it takes, which is less where addresses are shorter.
+        let past = |report: &Report| Timeline { bytes: (0, 0), ..report.timeline.clone() };
+        assert_eq!((&there.undo, past(&there)), (&here.undo, past(&here)));
         let Some(name) = names.next() else { break };
         let serial = there.opened.serial + 1;
         page.handle.send(Command::Open(Box::new(source(name))));
