@@ -246,8 +246,8 @@ fn errors_of_a_scene_are_found_at_the_same_place() {
 fn meshes_go_with_their_scene() {
     let text = "[[body]]\nname = \"a\"\nmesh = \"a.obj\"\ncloth = { density = 1, stiffness = 100 }\n";
     let mut scene = Scene::parse(text, "x.toml").expect("it is a scene");
-    let mut mesh = sprung::build::Mesh::default();
-    mesh.positions = vec![sprung::DVec3::ZERO, sprung::DVec3::X, sprung::DVec3::Z];
+    let positions = vec![sprung::DVec3::ZERO, sprung::DVec3::X, sprung::DVec3::Z];
+    let mut mesh = sprung::build::Mesh { positions, ..Default::default() };
     mesh.faces.push(&[0, 1, 2]);
     scene.load_meshes(&mut |_| Ok(mesh.clone())).expect("it is sound");
     let read = sent(&scene);
