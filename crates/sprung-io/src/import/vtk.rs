@@ -96,10 +96,11 @@ impl Reading<'_> {
                         return Err(self.words.error(Code::Conflict, sentence));
                     }
                     let kinds = self.integers(cells.ends.len(), 4)?;
+                    let cells = std::mem::take(&mut cells);
                     kinds.iter().zip(cells.iter()).for_each(|(&kind, cell)| self.add(kind, cell));
                 }
                 // All geometry comes before these.
-                b"POINT_DATA" | b"CELL_DATA" => return Ok(()),
+                b"POINT_DATA" | b"CELL_DATA" => break,
                 b"FIELD" | b"METADATA" => {
                     let sentence = format!("has {} before its geometry, which is not read", quoted(section));
                     return Err(self.words.error(Code::Unsupported, sentence));
@@ -107,7 +108,13 @@ impl Reading<'_> {
                 other => return Err(self.words.not_a(other, "a section such as POINTS or CELLS")),
             }
         }
-        Ok(())
+        match cells.ends.len() {
+            0 => Ok(()),
+            count => {
+                let sentence = format!("has {count} cells and the types of none: it is cut short");
+                Err(self.words.error(Code::Syntax, sentence))
+            }
+        }
     }
 
     /// A cell of a type by its number.
@@ -256,6 +263,7 @@ impl Reading<'_> {
             for _ in 0..count {
                 values.push(text(&mut self.words)?);
             }
+            self.mesh.warnings.extend(self.words.maybe_cut());
         }
         Ok(values)
     }

@@ -74,6 +74,14 @@ impl<'a> Words<'a> {
         number.ok_or_else(|| self.not_a(word, what))
     }
 
+    /// What to say if the number that was taken last may not be whole: nothing stands behind it, not even the end of its line.
+    /// Where numbers are counted, no other cut goes unnoticed.
+    pub fn maybe_cut(&self) -> Option<String> {
+        let line = self.line;
+        let said = || format!("ends right after a number, in line {line}, and may be cut short there");
+        self.rest.is_empty().then(said)
+    }
+
     /// The error for a word that is something else than what must be there.
     pub fn not_a(&self, word: &[u8], what: &str) -> Error {
         self.error(Code::Syntax, format!("has \"{}\" where {what} must be", quoted(word)))
