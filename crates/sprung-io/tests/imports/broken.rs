@@ -160,6 +160,17 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "a.usda: has no prim of the type Mesh with points",
     ),
     (
+        "a.usda",
+        "#usda 1.0\n(\n metersPerUnit = \"1 cm\"\n)\n",
+        "a.usda: metersPerUnit: is \"1 cm\", and must be a number",
+    ),
+    (
+        "a.usda",
+        "#usda 1.0\n(\n metersPerUnit = -1\n)\n",
+        "a.usda: metersPerUnit: says that its unit is -1 m, and it must be a finite number above 0",
+    ),
+    ("a.usda", "#usda 1.0\n(\n upAxis = \"X\"\n)\n", "a.usda: upAxis: is \"X\", and must be \"Y\" or \"Z\""),
+    (
         "a.msh",
         "$MeshFormat\n1.0 0 8\n",
         "a.msh:2:1: is of version 1, and versions 2.2 and 4.1 are read; save it anew with Mesh.MshFileVersion = 4.1",
@@ -259,5 +270,27 @@ fn a_last_number_that_may_be_cut_is_said() {
         let line = text.lines().count();
         let said = format!("ends right after a number, in line {line}, and may be cut short there");
         assert_eq!(mesh.warnings, [said], "{name}");
+    }
+}
+
+/// A binary layer whose metadata are of another type than they must be.
+#[test]
+fn metadata_of_a_wrong_type_are_refused_in_binary_usd() {
+    let (_, bytes) = samples::all().into_iter().find(|(name, _)| name.ends_with("usdc")).unwrap();
+    // The type of a value is in its seventh byte: of metersPerUnit a double (9) in the value itself (0x40), of upAxis a token.
+    for (kind, other, said) in [
+        (9u8, 11u8, "metersPerUnit: is no number of a kind that is read"),
+        (11, 9, "upAxis: is no word, and must be \"Y\" or \"Z\""),
+    ] {
+        let refused = (0..bytes.len() - 1).any(|at| {
+            if bytes[at..at + 2] != [kind, 0x40] {
+                return false;
+            }
+            let mut changed = bytes.clone();
+            changed[at] = other;
+            let read = read_mesh(&changed, "a.usdc", &mut companion);
+            read.is_err_and(|error| error.to_string() == format!("a.usdc: {said}"))
+        });
+        assert!(refused, "{said}");
     }
 }
