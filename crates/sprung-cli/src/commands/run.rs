@@ -9,10 +9,10 @@ use sprung::{Change, Code, Error, Result, SettleOptions, Simulation, significant
 use sprung_io::{RunInfo, Written, files};
 
 use super::checkpoints::Checkpoints;
+use super::limits::{Contacts, describe};
 use super::outputs::{self, Outputs};
 use super::record::{Recorder, check_names};
 use super::resume;
-use super::show::describe;
 use crate::args::RunArgs;
 use crate::console::{bytes, complain, counted, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
@@ -301,7 +301,7 @@ fn warn_of_large_dt(simulation: &mut Simulation) {
             "Warning: dt = {} s {verdict} the largest stable step of {} s; the tightest place is {}. Expect a blow-up. {advice}",
             rounded(params.dt),
             rounded(limit),
-            describe(simulation, certified.setter),
+            describe(simulation, &certified, Contacts::Now),
         ));
     }
 }

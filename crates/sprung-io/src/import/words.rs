@@ -133,15 +133,7 @@ pub(super) fn from_base64(text: &[u8]) -> Option<Vec<u8>> {
     for four in text.chunks(4) {
         let mut bits = 0u32;
         for &letter in four {
-            let value = match letter {
-                b'A'..=b'Z' => letter - b'A',
-                b'a'..=b'z' => letter - b'a' + 26,
-                b'0'..=b'9' => letter - b'0' + 52,
-                b'+' => 62,
-                b'/' => 63,
-                _ => return None,
-            };
-            bits = bits << 6 | u32::from(value);
+            bits = bits << 6 | base64_value(letter)?;
         }
         let whole = match four.len() {
             4 => 3,
@@ -153,4 +145,17 @@ pub(super) fn from_base64(text: &[u8]) -> Option<Vec<u8>> {
         bytes.extend_from_slice(&bits.to_be_bytes()[1..=whole]);
     }
     Some(bytes)
+}
+
+/// The six bits that a letter of base64 stands for.
+pub(super) fn base64_value(letter: u8) -> Option<u32> {
+    let value = match letter {
+        b'A'..=b'Z' => letter - b'A',
+        b'a'..=b'z' => letter - b'a' + 26,
+        b'0'..=b'9' => letter - b'0' + 52,
+        b'+' => 62,
+        b'/' => 63,
+        _ => return None,
+    };
+    Some(value.into())
 }

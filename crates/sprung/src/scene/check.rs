@@ -2,12 +2,14 @@
 //!
 //! Each check names its field, such as `body[0].springs[1].stiffness`; the scene's origin turns that into a line.
 
+mod made;
 mod mesh;
 mod pins;
 mod values;
 
 use std::collections::HashSet;
 
+use self::made::check_made;
 use self::mesh::check_mesh;
 use self::pins::check_pins;
 pub(super) use self::values::number;
@@ -109,6 +111,7 @@ fn check_bodies(scene: &Scene, max_points: u64) -> Result<()> {
         }
         check_placement(&path, body)?;
         check_masses(&path, body)?;
+        check_made(&path, body)?;
         check_velocity(&path, body)?;
         check_pins(&path, body)?;
         for (index, springs) in body.springs.iter().enumerate() {
@@ -193,7 +196,8 @@ fn check_masses(path: &str, body: &Body) -> Result<()> {
     if let Some(total) = body.body_mass {
         let field = format!("{path}.body_mass");
         mass(&field, total)?;
-        if !body.waits_for_mesh() {
+        // A mesh that says where there is more of the material has it shared out otherwise: see `made.rs`.
+        if !body.waits_for_mesh() && body.made().is_none_or(|made| made.masses.is_empty()) {
             mass(&field, total / body.point_count() as f64)?;
         }
     }

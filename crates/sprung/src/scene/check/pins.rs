@@ -3,12 +3,15 @@
 use std::collections::HashSet;
 
 use super::values::{exactly_one, point_of, vector};
-use crate::build::Lattice;
+use crate::build::{Lattice, Mesh};
 use crate::error::{Code, Error, Result};
 use crate::scene::assemble::pinned_vertices;
 use crate::scene::choices::{Pin, PinWhere};
 use crate::scene::suggest::{did_you_mean, shortened};
 use crate::scene::types::Body;
+
+/// Groups or colours of a mesh that a sentence lists.
+const MOST_LISTED: usize = 12;
 
 pub fn check_pins(path: &str, body: &Body) -> Result<()> {
     let shape = body.shape();
@@ -78,8 +81,7 @@ fn check_place(field: &str, pin: &PinWhere, body: &Body) -> Result<()> {
         let names = || mesh.groups.iter().map(|group| group.name.as_str());
         let there = match mesh.groups.len() {
             0 => "no groups".to_owned(),
-            1..=12 => format!("the groups {}", names().map(shortened).collect::<Vec<_>>().join(", ")),
-            count => format!("{count} others"),
+            count => format!("the groups {}", listed(names().map(shortened), count)),
         };
         let sentence = format!("is \"{}\", and the mesh has {there}", shortened(name));
         let error = Error::new(Code::NotFound, sentence).at_field(format!("{field}.group"));
@@ -89,13 +91,39 @@ fn check_place(field: &str, pin: &PinWhere, body: &Body) -> Result<()> {
         });
     }
     if pin.colour.is_some() && pinned_vertices(pin, mesh).is_empty() {
-        let sentence = match mesh.colours.is_empty() {
-            true => "is a colour, and the mesh has none",
-            false => "is the colour of no vertex",
+        let colours = colours_of(mesh);
+        let sentence = match colours.len() {
+            0 => "is a colour, and the mesh has none".to_owned(),
+            count => {
+                let there = listed(colours.into_iter().map(in_hundredths), count);
+                format!("is the colour of no vertex, and the mesh has the colours {there}")
+            }
         };
         return Err(Error::new(Code::NotFound, sentence).at_field(format!("{field}.colour")));
     }
     Ok(())
+}
+
+/// The first of some names, and how many more there are.
+fn listed(names: impl Iterator<Item = String>, count: usize) -> String {
+    let some = names.take(MOST_LISTED).collect::<Vec<_>>().join(", ");
+    match count.saturating_sub(MOST_LISTED) {
+        0 => some,
+        more => format!("{some} and {more} more"),
+    }
+}
+
+/// The colours of a mesh in hundredths, each once, in the order of its vertices: a pin does not tell them apart more finely.
+fn colours_of(mesh: &Mesh) -> Vec<[i64; 3]> {
+    let mut seen = HashSet::new();
+    let hundredths = |colour: &[f32; 3]| colour.map(|share| (100.0 * share).round() as i64);
+    mesh.colours.iter().map(hundredths).filter(|colour| seen.insert(*colour)).collect()
+}
+
+/// A colour as a pin says it.
+fn in_hundredths(colour: [i64; 3]) -> String {
+    let [red, green, blue] = colour.map(|share| share as f64 / 100.0);
+    format!("[{red}, {green}, {blue}]")
 }
 
 fn unknown_side(name: &str, shape: Option<&Lattice>, of_mesh: bool) -> Error {
