@@ -84,3 +84,33 @@ fn a_checkpoint_needs_no_mesh_file() {
         sprung(folder.path(), &["run", "a.sprung", "--frames", "2", "--quiet", "-o", "b.csv"]);
     }
 }
+
+#[test]
+fn show_says_how_large_a_scene_is_and_what_became_of_its_meshes() {
+    let folder = TempDir::new().unwrap();
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+                f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::write(folder.path().join("cube.obj"), cube).unwrap();
+    let scene = "[[plane]]\ny = 0\nstiffness = 1e5\n[[body]]\nname = \"jelly\"\nmesh = \"cube.obj\"\nscale = 0.5\n\
+                 soft = { spacing = 0.25, density = 100, stiffness = 1000 }\n";
+    fs::write(folder.path().join("jelly.toml"), scene).unwrap();
+    let output = sprung(folder.path(), &["show", "jelly.toml"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    for line in [
+        "  size                 0.5 × 0.5 × 0.5 m\n",
+        "  mesh                 cube.obj as soft body jelly: 27 points, 126 springs\n",
+        // A corner has the eighth part of a cell: 100 kg/m³ · (0.25 m)³/8.
+        "set by the contact of point 0 of jelly (0.195312 kg) with a plane of stiffness 100000 N/m\n",
+        "  for longer steps     a lower plane.stiffness, or a heavier point 0 of jelly: points of jelly have 0.462963 kg in the \
+         mean; a larger body.jelly.soft.spacing makes all its points heavier\n",
+    ] {
+        assert!(said.contains(line), "{line}{said}");
+    }
+    let output = sprung(folder.path(), &["show", "jelly.toml", "--json"]);
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["size"], serde_json::json!([0.5, 0.5, 0.5]));
+    let mesh = &answer["meshes"][0];
+    assert_eq!((mesh["becomes"].as_str(), mesh["points"].as_u64()), (Some("soft"), Some(27)));
+    let setter = answer["dt_limit_every_configuration_set_by"].as_str().unwrap();
+    assert!(setter.starts_with("the contact of point 0 of jelly (0.195312 kg)"), "{setter}");
+}

@@ -87,45 +87,69 @@ fn a_sheet_hung_by_its_border_stretches_as_its_material_does() {
         found.push(-1.0 - f64::from(vertex(&simulation, middle as usize).y));
     }
     // The border that is held cannot become narrower as the rest does (Poisson's ratio 1/3): if nothing could, the sheet would be
-    // stiffer by 1/(1 − 1/9) = 9/8. A finer mesh is the same cloth: lumped masses leave 1/side² of the stretch, and the
-    // corners of the held border, where strains are uneven, about as much again.
-    let last = found[2];
-    assert!((0.04905 * 8.0 / 9.0..0.04905).contains(&last), "{found:?}");
+    // stiffer by 1/(1 − 1/9) = 9/8.
+    let [coarse, middle, fine] = found[..] else { unreachable!() };
+    assert!((0.04905 * 8.0 / 9.0..0.04905).contains(&fine), "{found:?}");
+    // A finer mesh is the same cloth. Down the sheet lumped masses are exact, as the tension in the middle of a spring is what
+    // hangs below it; what is left are the corners of the held border, where strains go up like r^−0.3 or so, which lowers the
+    // order from 2: it is 1.5 here, with 0.13/side² of the stretch missing.
+    let order = ((middle - coarse) / (fine - middle)).log2();
+    assert!((1.3..2.0).contains(&order), "{order}");
     for (side, stretch) in [4.0, 8.0].into_iter().zip(&found) {
-        assert!((stretch / last - 1.0).abs() < 2.0 / (side * side), "{found:?}");
+        assert!((stretch / fine - 1.0).abs() < 0.25 / (side * side), "{found:?}");
     }
 }
 
-/// Held at its upper corners, it hangs in the same curve at three resolutions: places of the same vertices within 3 % of its side.
+/// Where the middle and the middle of the lower border of a sheet come to hang, which lay level, held by its upper corners.
+fn hung_by_corners(side: u32, pins: &str) -> [Vec3; 2] {
+    let text = format!(
+        "
+        [[body]]
+        name = 'cloth'
+        mesh = 'sheet.obj'
+        rotation = {{ axis = [1, 0, 0], degrees = 90 }}
+        pins = [{pins}]
+        cloth = {{ density = 0.5, stiffness = 100.0, damping = 0.02 }}
+    "
+    );
+    let simulation = settled(&loaded(&text, &sheet(side)).unwrap(), Some(1e-4));
+    let column = side / 2 * (side + 1);
+    [side / 2, side].map(|row| vertex(&simulation, (column + row) as usize))
+}
+
+/// Held at its upper corners, it hangs in the same curve at three resolutions, but for what a support of no size must give way.
 #[test]
 fn a_sheet_hung_by_its_corners_hangs_the_same_at_three_resolutions() {
-    let places: Vec<[Vec3; 2]> = [6u32, 12, 24]
-        .into_iter()
-        .map(|side| {
-            let corner = side * (side + 1);
-            let text = format!(
-                "
-            [[body]]
-            name = 'cloth'
-            mesh = 'sheet.obj'
-            rotation = {{ axis = [1, 0, 0], degrees = 90 }}
-            pins = [{{ nearest = [0, 0, 0] }}, {corner}]
-            cloth = {{ density = 0.5, stiffness = 100.0, damping = 0.02 }}
-        "
-            );
-            let simulation = settled(&loaded(&text, &sheet(side)).unwrap(), Some(1e-4));
-            let at =
-                |i: u32, j: u32| vertex(&simulation, ((i * side / 6) * (side + 1) + j * side / 6) as usize);
-            // The middle, and the middle of the lower border. The upper border falls into folds, and those are as fine as triangles are.
-            [at(3, 3), at(3, 6)]
-        })
-        .collect();
-    // Stated, not derived: 0.013 and 0.011 of the side were found. The cloth takes up slack in folds, which are as fine as its
-    // triangles, and so these differences shrink more slowly than those of a sheet without folds.
-    for (coarse, tolerance) in [(0, 0.03), (1, 0.015)] {
-        for (place, finest) in places[coarse].iter().zip(&places[2]) {
-            assert!(place.distance(*finest) < tolerance, "{places:?}");
+    let places = [6u32, 12, 24]
+        .map(|side| hung_by_corners(side, &format!("{{ nearest = [0, 0, 0] }}, {}", side * (side + 1))));
+    // A membrane that is held in a point hangs without bound below it: at a distance r from the tip of a wedge of angle α its
+    // strain is F/(½(α + sin α)·E·h·r) along the bisector (Michell 1900). With each halving of the mesh, which cannot tell how
+    // small the support is, it comes down by F·ln2/(½(α + sin α)·E·h) more. Here F, half the weight, is 2.4525 N, α is 90° and
+    // E·h is 100 N/m: 0.0132 m; and up to 5 % more, as strains are of that order.
+    let halving =
+        1.05 * 2.4525 * std::f64::consts::LN_2 / (0.5 * (std::f64::consts::FRAC_PI_2 + 1.0) * 100.0);
+    for pair in places.windows(2) {
+        for (coarse, fine) in pair[0].iter().zip(&pair[1]) {
+            assert!(f64::from(coarse.distance(*fine)) < halving, "{places:?}");
         }
+    }
+}
+
+/// Held by patches that are as large in each mesh, what is left goes with the size of its triangles.
+#[test]
+fn a_sheet_hung_by_patches_of_its_corners_hangs_the_same_at_three_resolutions() {
+    let pins = "{ box = { min = [-0.01, -1, -0.17], max = [0.17, 1, 0.01] } }, \
+                { box = { min = [0.83, -1, -0.17], max = [1.01, 1, 0.01] } }";
+    let places = [6u32, 12, 24].map(|side| hung_by_corners(side, pins));
+    let apart = |one: [Vec3; 2], other: [Vec3; 2]| [0, 1].map(|k| f64::from(one[k].distance(other[k])));
+    let (first, second) = (apart(places[0], places[1]), apart(places[1], places[2]));
+    for (first, second) in first.into_iter().zip(second) {
+        // Of the first order, as folds are as fine as triangles, and strains at a patch's own corners without bound: found were
+        // orders of 0.8 and 1.0. By Richardson the finest then lacks about as much as its difference from the one before, 0.0015 of
+        // the side at most, and that is stated.
+        let order = (first / second).log2();
+        assert!((0.7..1.5).contains(&order), "{order}: {places:?}");
+        assert!(second < 0.002, "{places:?}");
     }
 }
 
@@ -154,12 +178,24 @@ fn a_beam_of_three_fillings_sags_the_same() {
         .collect();
     // Timoshenko: ρ·g·A·L⁴/(8·E·I) + ρ·g·A·L²/(2·κ·G·A) with G = 0.4·E and κ = 5/6 is 0.1884 + 0.0118 m. Springs along the beam
     // measure its bending at the borders of the cells and those across halfway between, which is too stiff by a share of
-    // 1/n² (trapezoid 2/n² for two thirds of them, midpoint −1/n² for the rest); and the rest is for the held end, where the
-    // section cannot become narrower, and for the sag itself, a twentieth of the length.
+    // 1/n² (trapezoid 2/n² for two thirds of them, midpoint −1/n² for the rest).
     let exact = 0.2002;
-    for (across, sag) in [3.0f64, 4.0, 6.0].iter().zip(&sags) {
-        let corrected = sag * (1.0 + 1.0 / (across * across));
-        assert!((corrected / exact - 1.0).abs() < 0.06, "{sags:?}");
+    let [three, four, six] = sags[..] else { unreachable!() };
+    // The order between these: 1.6, as the edges of the held end, where strains are without bound, lower it from 2.
+    let fall = |order: f64| {
+        let [a, b, c] = [3.0f64, 4.0, 6.0].map(|across| across.powf(-order));
+        (a - b) / (b - c)
+    };
+    let found = (four - three) / (six - four);
+    assert!((fall(1.4)..fall(2.0)).contains(&found), "{sags:?}: {found}");
+    // The rest is for the held end, where the section cannot become narrower. If it could not at all, it would be stiffer by
+    // (1 − ν)/((1 + ν)(1 − 2ν)) = 1.2, and of the sag 1 − (7/8)⁴ = 41 % come from the first eighth of the beam, half its height, in
+    // which that fades (Saint-Venant): 7 % at most. Richardson's limit, and each filling with its share corrected, are
+    // 4 to 5 % below; never above.
+    let richardson = six + (six - four) / (36.0 / 16.0 - 1.0);
+    let corrected = [(3.0, three), (4.0, four), (6.0, six)].map(|(n, sag)| sag * (1.0 + 1.0 / (n * n)));
+    for sag in corrected.into_iter().chain([richardson]) {
+        assert!((0.94 * exact..exact).contains(&sag), "{sags:?}: {sag}");
     }
 }
 
@@ -306,4 +342,77 @@ fn triangles_make_faces_only_as_fans() {
         assert_eq!(error.code(), Code::Conflict, "{fans:?}: {error}");
     }
     assert!(ModelBuilder::new().join_into_faces(vec![1]).is_err());
+}
+
+/// What a mesh makes of a material must be in range, and what is not is the fault of its size as a rule.
+#[test]
+fn a_mesh_too_small_or_too_large_for_its_material_is_refused_with_its_size() {
+    let refused = |scale: &str, mesh: &Mesh, more: &str| {
+        let text = format!("[[body]]\nname = 'a'\nmesh = 'a.obj'\nscale = {scale}\n{more}\n");
+        loaded(&text, mesh).unwrap_err().to_string()
+    };
+    let cloth = "cloth = { density = 0.5, stiffness = 50 }";
+    let allowed = "and masses must be from 1e-12 to 1e12 kg, or 0 (fixed in space)";
+    // Of four squares each has a quarter of 0.5 kg/m², and the corner of one a quarter of that: both its triangles' pairs count half.
+    let tiny = sheet(2).scaled(1e-30);
+    assert_eq!(
+        refused("1", &tiny, cloth),
+        format!(
+            "mesh.toml:3:8: body[0].mesh: \"a.obj\" is 1e-30 × 1e-30 × 0 m in size, which makes a point of 3.125e-62 kg, \
+             {allowed}; make the scale larger, which says how many metres a unit of the file is"
+        )
+    );
+    let error = refused("1e9", &sheet(2), cloth);
+    assert!(error.contains("is 1e9 × 1e9 × 0 m in size, which makes a point of 3.125e16 kg"), "{error}");
+    assert!(error.contains("; make the scale smaller, which says"), "{error}");
+    let error = refused("1", &sheet(2), "body_mass = 1e-12\ncloth = { stiffness = 50 }");
+    assert!(error.contains("body[0].body_mass: is 1e-12 kg, which makes a point of 6.25e-14 kg"), "{error}");
+    let error =
+        refused("1e-30", &sheet(2).scaled(1e30), "soft = { spacing = 1, stiffness = 1, density = 1 }");
+    assert!(error.contains("body[0].scale: is 1e-30, and must be from 1e-9"), "{error}");
+    let error = refused("1", &sheet(2).scaled(1e25), "net = { stiffness = 1 }");
+    assert!(error.contains("body[0].mesh: \"a.obj\" is 1e25 × 1e25 × 0 m in size, and places"), "{error}");
+
+    // Stiffness and damping follow from the material, and say which of its keys they follow from.
+    let error = refused("1", &beam(), "soft = { spacing = 1, stiffness = 1e12, density = 1, damping = 1e6 }");
+    assert!(
+        error.contains("body[0].soft.damping: is 1000000 s, which gives a spring 1e17 N·s/m, and there may be at most 1e12 N·s/m"),
+        "{error}"
+    );
+    let error = refused("1e9", &beam(), "soft = { spacing = 1e9, stiffness = 1e12, density = 1e-15 }");
+    assert!(error.contains("density"), "{error}");
+    let error = refused("1e6", &beam(), "point_mass = 1\nsoft = { spacing = 1e6, stiffness = 1e12 }");
+    assert!(error.contains("body[0].soft.stiffness: is 1e12 Pa, which gives a spring"), "{error}");
+}
+
+#[test]
+fn a_pin_of_an_unknown_colour_or_group_lists_those_there_are() {
+    let mut mesh = sheet(4);
+    let pinned = |mesh: &Mesh, pin: &str| {
+        let text = format!(
+            "[[body]]\nname = 'a'\nmesh = 'a.obj'\npins = [{{ {pin} }}]\nnet = {{ stiffness = 1 }}\n"
+        );
+        loaded(&text, mesh).unwrap_err().sentence().to_owned()
+    };
+    assert_eq!(pinned(&mesh, "colour = [0, 1, 0]"), "is a colour, and the mesh has none");
+    mesh.colours = vec![[0.5019608, 0.9, 0.8]; 25];
+    mesh.colours[3] = [1.0, 0.0, 0.0];
+    // The same to two decimals, and so as good as the same.
+    mesh.colours[7] = [0.501, 0.9, 0.8];
+    let exact = "is the colour of no vertex, and the mesh has the colours [0.5, 0.9, 0.8], [1, 0, 0]";
+    assert_eq!(pinned(&mesh, "colour = [0, 1, 0]"), exact);
+    for (vertex, colour) in (0..).zip(&mut mesh.colours) {
+        *colour = [0.04 * vertex as f32, 0.0, 1.0];
+    }
+    let said = pinned(&mesh, "colour = [0, 1, 0]");
+    assert!(said.ends_with("[0.36, 0, 1], [0.4, 0, 1], [0.44, 0, 1] and 13 more"), "{said}");
+
+    assert_eq!(pinned(&mesh, "group = 'tip'"), "is \"tip\", and the mesh has the groups top");
+    let group = |number: u32| MeshGroup { name: format!("g{number}"), vertices: vec![number] };
+    mesh.groups.extend((0..20).map(group));
+    let said = pinned(&mesh, "group = 'tip'");
+    assert_eq!(
+        said,
+        "is \"tip\", and the mesh has the groups top, g0, g1, g2, g3, g4, g5, g6, g7, g8, g9, g10 and 9 more"
+    );
 }

@@ -3,6 +3,7 @@
 mod bench;
 mod checkpoints;
 mod demo;
+mod limits;
 mod new;
 mod outputs;
 mod record;

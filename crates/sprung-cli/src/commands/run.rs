@@ -12,10 +12,10 @@ use sprung_io::checkpoint::MOST_FRAMES;
 use sprung_io::{RunInfo, Written, files};
 
 use super::checkpoints::Checkpoints;
+use super::limits::{Contacts, describe};
 use super::outputs::{self, Outputs};
 use super::record::Recorder;
 use super::resume;
-use super::show::describe;
 use crate::args::RunArgs;
 use crate::console::{bytes, complain, counted, grouped, note, progress, say, seconds};
 use crate::interrupt::Interrupt;
@@ -320,7 +320,7 @@ fn warn_of_large_dt(simulation: &mut Simulation) {
             "Warning: dt = {} s {verdict} the largest stable step of {} s; the tightest place is {}. Expect a blow-up. {advice}",
             rounded(params.dt),
             rounded(limit),
-            describe(simulation, certified.setter),
+            describe(simulation, &certified, Contacts::Now),
         ));
     }
 }

@@ -1,11 +1,13 @@
 //! `sprung show`: what a scene is, and how large dt may be.
 
 use serde::Serialize;
-use sprung::stability::{self, Limit, Setter, Sharp};
+use sprung::scene::Scene;
+use sprung::stability::{self, Limit, Sharp};
 use sprung::{Energy, Result, Simulation, significant as rounded};
 use sprung_io::checkpoint::Recording;
 
 use super::checkpoints::recorded_of;
+use super::limits::{Contacts, describe, remedy};
 use crate::args::ShowArgs;
 use crate::console::{counted, grouped, say};
 use crate::source::{self, Begun};
@@ -19,6 +21,11 @@ struct Answer {
     springs: usize,
     pinned: usize,
     bodies: Vec<String>,
+    /// m; along x, y and z, from the outermost points.
+    size: [f64; 3],
+    /// What became of each mesh.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    meshes: Vec<OfMesh>,
     /// s.
     dt: f64,
     /// Steps from one frame to the next.
@@ -29,8 +36,10 @@ struct Answer {
     dt_limit: Option<f64>,
     /// s.
     dt_limit_certified: Option<f64>,
+    dt_limit_certified_set_by: Option<String>,
     /// s.
     dt_limit_every_configuration: Option<f64>,
+    dt_limit_every_configuration_set_by: Option<String>,
     /// 1/s².
     omega2_max: f64,
     /// 1/s.
@@ -44,6 +53,17 @@ struct Answer {
     /// Where it is a checkpoint that is described.
     #[serde(skip_serializing_if = "Option::is_none")]
     checkpoint: Option<OfCheckpoint>,
+}
+
+/// A body made from a mesh.
+#[derive(Serialize)]
+struct OfMesh {
+    body: String,
+    file: String,
+    /// cloth, soft or net.
+    becomes: &'static str,
+    points: usize,
+    springs: usize,
 }
 
 /// What a checkpoint holds besides a scene that is under way.
@@ -98,12 +118,17 @@ pub fn run(args: &ShowArgs) -> Result<()> {
             springs: model.spring_count(),
             pinned: fixed_points(&simulation),
             bodies: model.bodies().iter().map(|body| body.name.clone()).collect(),
+            size: size(&simulation),
+            meshes: meshes(&scene, &simulation),
             dt: params.dt,
             substeps: steps_per_frame,
             frame_time: params.dt * steps_per_frame as f64,
             dt_limit: sharp.dt,
             dt_limit_certified: certified.map(|limit| limit.dt),
+            dt_limit_certified_set_by: certified.map(|limit| describe(&simulation, &limit, Contacts::Now)),
             dt_limit_every_configuration: every.map(|limit| limit.dt),
+            dt_limit_every_configuration_set_by: every
+                .map(|limit| describe(&simulation, &limit, Contacts::Ever)),
             omega2_max: sharp.omega2_max,
             c_max: sharp.c_max,
             total_mass: total_mass(&simulation),
@@ -123,7 +148,7 @@ pub fn run(args: &ShowArgs) -> Result<()> {
         if let Some(checkpoint) = &checkpoint {
             print_checkpoint(checkpoint);
         }
-        print(&simulation, steps_per_frame, &energy, &sharp, certified.as_ref(), every.as_ref());
+        print(&scene, &simulation, steps_per_frame, &energy, &sharp, certified.as_ref(), every.as_ref());
     }
     Ok(())
 }
@@ -173,6 +198,7 @@ fn row(label: &str, text: String) {
 }
 
 fn print(
+    scene: &Scene,
     simulation: &Simulation,
     steps_per_frame: u64,
     energy: &Energy,
@@ -184,6 +210,12 @@ fn print(
     let fixed = fixed_points(simulation);
     row("points", format!("{}, of which {} fixed", grouped(model.point_count()), grouped(fixed)));
     row("springs", grouped(model.spring_count()));
+    row("size", format!("{} m", size(simulation).map(rounded).join(" × ")));
+    for OfMesh { body, file, becomes, points, springs } in meshes(scene, simulation) {
+        let kind = if becomes == "soft" { "soft body" } else { becomes };
+        let (points, springs) = (counted(points as u64, "point"), counted(springs as u64, "spring"));
+        row("mesh", format!("{file} as {kind} {body}: {points}, {springs}"));
+    }
     row("moving mass", format!("{} kg", rounded(total_mass(simulation))));
     row("energy", format!("{} J", rounded(energy.total())));
     let frame = rounded(params.dt * steps_per_frame as f64);
@@ -199,14 +231,20 @@ fn print(
     if let Some(limit) = certified {
         row(
             "  certified",
-            format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)),
+            format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit, Contacts::Now)),
         );
     }
     if let Some(limit) = every {
         row(
             "  in any shape",
-            format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit.setter)),
+            format!("{}, set by {}", share(params.dt, limit.dt), describe(simulation, limit, Contacts::Ever)),
         );
+    }
+    let limits = [(every, Contacts::Ever), (certified, Contacts::Now)];
+    if let Some(text) =
+        limits.into_iter().find_map(|(limit, contacts)| remedy(simulation, scene, limit?, contacts))
+    {
+        row("for longer steps", text);
     }
     if sharp.dt.is_some() {
         row(
@@ -221,12 +259,30 @@ fn share(dt: f64, limit: f64) -> String {
     format!("{} s; dt is {:.1} % of it", rounded(limit), 100.0 * dt / limit)
 }
 
-/// A spring or point and the body it belongs to, in words.
-pub fn describe(simulation: &Simulation, setter: Setter) -> String {
-    match setter {
-        Setter::Spring(spring) => simulation.model().spring_name(spring),
-        Setter::Point(point) => format!("the contact or grab at {}", simulation.model().point_name(point)),
-    }
+/// From the outermost points, m.
+fn size(simulation: &Simulation) -> [f64; 3] {
+    let places = simulation.state().position.iter().map(|place| place.as_dvec3());
+    let around = places.map(|place| [place; 2]).reduce(|[low, high], [p, _]| [low.min(p), high.max(p)]);
+    around.map_or([0.0; 3], |[low, high]| (high - low).to_array())
+}
+
+/// What became of each mesh.
+fn meshes(scene: &Scene, simulation: &Simulation) -> Vec<OfMesh> {
+    let bodies = scene.bodies.iter().zip(simulation.model().bodies());
+    let from_mesh = bodies.filter_map(|(said, made)| Some((said, said.mesh.as_ref()?, made)));
+    from_mesh
+        .map(|(said, mesh, made)| OfMesh {
+            body: said.name.clone(),
+            file: mesh.file.clone(),
+            becomes: match (&said.cloth, &said.soft) {
+                (Some(_), _) => "cloth",
+                (None, Some(_)) => "soft",
+                (None, None) => "net",
+            },
+            points: made.points.len(),
+            springs: made.springs.len(),
+        })
+        .collect()
 }
 
 fn fixed_points(simulation: &Simulation) -> usize {

@@ -3,9 +3,10 @@
 use sprung::{Code, Error, Result};
 
 /// Which byte of a number comes first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Order {
     /// The smallest, as in most machines.
+    #[default]
     Little,
     /// The largest.
     Big,

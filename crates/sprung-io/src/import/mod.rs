@@ -4,7 +4,7 @@
 //! takes time and memory in proportion to them, and ends with a mesh or with one sentence that names the place. Formats that were
 //! made for more than meshes are read as far as meshes go.
 //!
-//! glTF is read by a library, between checks of our own. The other readers are our own, and small. What was found of the libraries
+//! glTF is read by a library, between checks of our own, and so is the tree of VTK's XML. The other readers are our own, and small. What was found of the libraries
 //! that there are, each tried on whole, hostile and 20 000 damaged files, with the overflow of numbers checked:
 //! - OBJ, `tobj` 4.0.5: of five vertices with `f 4 2 1` it gives three, in that order, as float32; refuses a face that goes on after
 //!   a backslash; has no lines in its errors; three panics.
@@ -26,6 +26,7 @@ mod ply;
 mod stl;
 mod usd;
 mod vtk;
+mod vtu;
 mod words;
 
 use std::collections::BTreeMap;
@@ -72,6 +73,11 @@ pub static READERS: &[Reader] = &[
     },
     Reader { endings: &["msh"], description: "Gmsh 2 and 4, as text or binary", read: msh::read },
     Reader { endings: &["vtk"], description: "VTK legacy, as text or binary", read: vtk::read },
+    Reader {
+        endings: &["vtu"],
+        description: "VTK XML unstructured grid, as text or binary, compressed by zlib or not",
+        read: vtu::read,
+    },
 ];
 
 /// The reader for a file of this name.

@@ -175,6 +175,12 @@ pub(super) fn read(bytes: &[u8], _: &mut Companions<'_>) -> Result<Mesh> {
             Numbers::Text(words) => words,
             Numbers::Binary(bytes) => Words::new(bytes.rest(), line),
         };
+        // A file that is cut, or whose count is too small, would be read as if it were whole.
+        let end = String::from_utf8_lossy(section).replace('$', "$End");
+        let found = words.expect(&end)?;
+        if found != end.as_bytes() {
+            return Err(words.not_a(found, &end));
+        }
     }
     Ok(reading.finish())
 }

@@ -147,6 +147,9 @@ pub(super) fn read(bytes: &[u8], _: &mut Companions<'_>) -> Result<Mesh> {
             _ => skip(element, count, &mut body)?,
         }
     }
+    if let Body::Text(words) = &body {
+        mesh.warnings.extend(words.maybe_cut());
+    }
     Ok(mesh)
 }
 

@@ -62,14 +62,19 @@ fn text(bytes: &[u8]) -> Result<Mesh> {
     let mut mesh = Mesh::default();
     let mut groups = Groups::default();
     let mut words = Words::new(bytes, 1);
-    let (mut solid, mut corners) = (None, Vec::new());
+    let (mut solid, mut corners, mut is_inside) = (None, Vec::new(), false);
     while let Some(word) = words.next() {
         match word {
             b"solid" => {
+                is_inside = true;
                 let name = words.rest_of_line();
                 solid = (!name.is_empty()).then(|| groups.named(&quoted(name)));
             }
-            b"facet" | b"outer" | b"endsolid" => {
+            b"facet" | b"outer" => {
+                words.rest_of_line();
+            }
+            b"endsolid" => {
+                is_inside = false;
                 words.rest_of_line();
             }
             b"vertex" => {
@@ -93,6 +98,9 @@ fn text(bytes: &[u8]) -> Result<Mesh> {
     }
     if !corners.is_empty() {
         return Err(words.error(Code::Syntax, "ends in the middle of a face"));
+    }
+    if is_inside {
+        return Err(words.error(Code::Syntax, "ends before endsolid: it is cut short"));
     }
     mesh.groups = groups.finish();
     Ok(mesh)

@@ -49,14 +49,37 @@ pub(super) fn read(bytes: &[u8], _: &mut Companions<'_>) -> Result<Mesh> {
     let mut reading = Reading { words, is_binary, has_offsets, mesh: Mesh::default(), others: 0 };
     reading.sections()?;
     let mut mesh = reading.mesh;
-    if reading.others > 0 {
-        let sentence = format!(
-            "has {} cells other than lines, triangles, quads, polygons and tetrahedra, which were left out",
-            reading.others
-        );
-        mesh.warnings.push(sentence);
-    }
+    mesh.warnings.extend(left_out(reading.others));
     Ok(mesh)
+}
+
+/// Adds a cell of a type by VTK's number for it; whether it is of a kind that is read.
+pub(super) fn add_cell(mesh: &mut Mesh, kind: i64, corners: &[u32]) -> bool {
+    match (kind, corners) {
+        (1 | 2, _) => {}
+        (3 | 4, _) => mesh.lines.extend(corners.windows(2).map(|pair| [pair[0], pair[1]])),
+        (5 | 7 | 9, [_, _, _, ..]) => mesh.faces.push(corners),
+        (6, [_, _, _, ..]) => {
+            for (index, three) in corners.windows(3).enumerate() {
+                let turned = [three[0], three[2], three[1]];
+                mesh.faces.push(if index % 2 == 0 { three } else { &turned });
+            }
+        }
+        (8, &[a, b, c, d]) => mesh.faces.push(&[a, b, d, c]),
+        (10, &[a, b, c, d]) => mesh.tetrahedra.push([a, b, c, d]),
+        _ => return false,
+    }
+    true
+}
+
+/// What to say of so many cells of other kinds.
+pub(super) fn left_out(others: u64) -> Option<String> {
+    let said = || {
+        format!(
+            "has {others} cells other than lines, triangles, quads, polygons and tetrahedra, which were left out"
+        )
+    };
+    (others > 0).then(said)
 }
 
 impl Reading<'_> {
@@ -96,10 +119,11 @@ impl Reading<'_> {
                         return Err(self.words.error(Code::Conflict, sentence));
                     }
                     let kinds = self.integers(cells.ends.len(), 4)?;
+                    let cells = std::mem::take(&mut cells);
                     kinds.iter().zip(cells.iter()).for_each(|(&kind, cell)| self.add(kind, cell));
                 }
                 // All geometry comes before these.
-                b"POINT_DATA" | b"CELL_DATA" => return Ok(()),
+                b"POINT_DATA" | b"CELL_DATA" => break,
                 b"FIELD" | b"METADATA" => {
                     let sentence = format!("has {} before its geometry, which is not read", quoted(section));
                     return Err(self.words.error(Code::Unsupported, sentence));
@@ -107,25 +131,18 @@ impl Reading<'_> {
                 other => return Err(self.words.not_a(other, "a section such as POINTS or CELLS")),
             }
         }
-        Ok(())
+        match cells.ends.len() {
+            0 => Ok(()),
+            count => {
+                let sentence = format!("has {count} cells and the types of none: it is cut short");
+                Err(self.words.error(Code::Syntax, sentence))
+            }
+        }
     }
 
     /// A cell of a type by its number.
     fn add(&mut self, kind: i64, corners: &[u32]) {
-        match (kind, corners) {
-            (1 | 2, _) => {}
-            (3 | 4, _) => self.mesh.lines.extend(corners.windows(2).map(|pair| [pair[0], pair[1]])),
-            (5 | 7 | 9, [_, _, _, ..]) => self.mesh.faces.push(corners),
-            (6, [_, _, _, ..]) => {
-                for (index, three) in corners.windows(3).enumerate() {
-                    let turned = [three[0], three[2], three[1]];
-                    self.mesh.faces.push(if index % 2 == 0 { three } else { &turned });
-                }
-            }
-            (8, &[a, b, c, d]) => self.mesh.faces.push(&[a, b, d, c]),
-            (10, &[a, b, c, d]) => self.mesh.tetrahedra.push([a, b, c, d]),
-            _ => self.others += 1,
-        }
+        self.others += u64::from(!add_cell(&mut self.mesh, kind, corners));
     }
 
     fn points(&mut self) -> Result<()> {
@@ -256,6 +273,7 @@ impl Reading<'_> {
             for _ in 0..count {
                 values.push(text(&mut self.words)?);
             }
+            self.mesh.warnings.extend(self.words.maybe_cut());
         }
         Ok(values)
     }

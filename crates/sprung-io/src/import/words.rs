@@ -74,6 +74,14 @@ impl<'a> Words<'a> {
         number.ok_or_else(|| self.not_a(word, what))
     }
 
+    /// What to say if the number that was taken last may not be whole: nothing stands behind it, not even the end of its line.
+    /// Where numbers are counted, no other cut goes unnoticed.
+    pub fn maybe_cut(&self) -> Option<String> {
+        let line = self.line;
+        let said = || format!("ends right after a number, in line {line}, and may be cut short there");
+        self.rest.is_empty().then(said)
+    }
+
     /// The error for a word that is something else than what must be there.
     pub fn not_a(&self, word: &[u8], what: &str) -> Error {
         self.error(Code::Syntax, format!("has \"{}\" where {what} must be", quoted(word)))
@@ -125,15 +133,7 @@ pub(super) fn from_base64(text: &[u8]) -> Option<Vec<u8>> {
     for four in text.chunks(4) {
         let mut bits = 0u32;
         for &letter in four {
-            let value = match letter {
-                b'A'..=b'Z' => letter - b'A',
-                b'a'..=b'z' => letter - b'a' + 26,
-                b'0'..=b'9' => letter - b'0' + 52,
-                b'+' => 62,
-                b'/' => 63,
-                _ => return None,
-            };
-            bits = bits << 6 | u32::from(value);
+            bits = bits << 6 | base64_value(letter)?;
         }
         let whole = match four.len() {
             4 => 3,
@@ -145,4 +145,17 @@ pub(super) fn from_base64(text: &[u8]) -> Option<Vec<u8>> {
         bytes.extend_from_slice(&bits.to_be_bytes()[1..=whole]);
     }
     Some(bytes)
+}
+
+/// The six bits that a letter of base64 stands for.
+pub(super) fn base64_value(letter: u8) -> Option<u32> {
+    let value = match letter {
+        b'A'..=b'Z' => letter - b'A',
+        b'a'..=b'z' => letter - b'a' + 26,
+        b'0'..=b'9' => letter - b'0' + 52,
+        b'+' => 62,
+        b'/' => 63,
+        _ => return None,
+    };
+    Some(value.into())
 }

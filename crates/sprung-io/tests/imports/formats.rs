@@ -39,7 +39,7 @@ fn every_format_gives_the_same_tetrahedron() {
             assert_eq!(faces, expected, "{name}");
         }
         assert_eq!(mesh.warnings, [""; 0], "{name}");
-        let has_tetrahedra = name.ends_with("msh") || name.ends_with("vtk");
+        let has_tetrahedra = ["msh", "vtk", "vtu"].iter().any(|ending| name.ends_with(ending));
         assert_eq!(
             mesh.tetrahedra.as_slice(),
             if has_tetrahedra { &[[0, 1, 2, 3]][..] } else { &[] },
@@ -127,4 +127,48 @@ fn quads_lines_and_polygons_stay_what_they_are() {
     assert_eq!(faces, [&[0, 1, 2, 3][..], &[0, 1, 2, 4, 3]]);
     assert_eq!(mesh.faces.triangles(), [[0, 1, 2], [0, 2, 3], [0, 1, 2], [0, 2, 4], [0, 4, 3]]);
     assert_eq!(mesh.lines, [[0, 1], [1, 2]]);
+}
+
+/// Two parts, as several processes write them: the points of the second are numbered from 0 again.
+#[test]
+fn the_pieces_of_a_vtu_become_one_mesh() {
+    let part = |cells: &str| {
+        format!(
+            "<Piece NumberOfPoints=\"3\" NumberOfCells=\"2\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" \
+             format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><Cells>{cells}</Cells></Piece>"
+        )
+    };
+    let cells = "<DataArray type=\"Int32\" Name=\"types\" format=\"ascii\">5 3</DataArray>\
+                 <DataArray type=\"Int32\" Name=\"faces\" format=\"ascii\"/>\
+                 <DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 5</DataArray>\
+                 <DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 <!-- a line --> 2 0</DataArray>";
+    let empty = "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>";
+    let text = format!(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>{}{empty}{}</UnstructuredGrid></VTKFile>\n",
+        part(cells),
+        part(&cells.replace("5 3", "42 3"))
+    );
+    let mesh = read("a.vtu", text.as_bytes());
+    assert_eq!((mesh.positions.len(), mesh.faces.triangles()), (6, vec![[0, 1, 2]]));
+    assert_eq!(mesh.lines, [[2, 0], [5, 3]]);
+    assert!(mesh.warnings[0].starts_with("has 1 cells other than lines"), "{:?}", mesh.warnings);
+}
+
+/// Groups in an OBJ file and nodes in a glTF file may be as many as its faces: each costs a look, and not one for each of the others.
+#[test]
+fn very_many_groups_and_nodes_are_read_one_by_one() {
+    let count = 50_000;
+    let face = |k: usize| format!("v {k} 0 0\nv {k} 1 0\nv {k} 0 1\ng part{k}\nf -1 -2 -3\n");
+    let text: String = (0..count).map(face).collect();
+    let mesh = read("a.obj", text.as_bytes());
+    assert_eq!((mesh.groups.len(), mesh.faces.len()), (count, count));
+
+    let list = |one: &dyn Fn(usize) -> String| (0..count).map(one).collect::<Vec<_>>().join(",");
+    let text = samples::gltf(Some("buf%20fer.bin"));
+    let node = |k: usize| format!("{{\"mesh\": 0, \"name\": \"part{k}\", \"translation\": [{k}, 0, 0]}}");
+    let mut document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    document["nodes"] = serde_json::from_str(&format!("[{}]", list(&node))).unwrap();
+    document["scenes"][0]["nodes"] = (0..count).collect::<Vec<_>>().into();
+    let mesh = read("a.gltf", document.to_string().as_bytes());
+    assert_eq!((mesh.groups.len(), mesh.positions.len()), (count, 4 * count));
 }

@@ -231,6 +231,20 @@ pub fn usdz() -> Vec<u8> {
     bytes
 }
 
+/// As VTK 9.7 writes XML: each way of writing numbers, in either order of bytes, with counts of 4 and 8 bytes; in `blocks.vtu` also
+/// with fields before the geometry, and compressed in blocks of 40 bytes.
+pub const VTU: &[(&str, &[u8])] = &[
+    ("text.vtu", include_bytes!("vtu/text.vtu")),
+    ("binary.vtu", include_bytes!("vtu/binary.vtu")),
+    ("binary64.vtu", include_bytes!("vtu/binary64.vtu")),
+    ("zlib.vtu", include_bytes!("vtu/zlib.vtu")),
+    ("appended.vtu", include_bytes!("vtu/appended.vtu")),
+    ("appended-zlib.vtu", include_bytes!("vtu/appended-zlib.vtu")),
+    ("raw.vtu", include_bytes!("vtu/raw.vtu")),
+    ("raw-zlib.vtu", include_bytes!("vtu/raw-zlib.vtu")),
+    ("blocks.vtu", include_bytes!("vtu/blocks.vtu")),
+];
+
 /// One of every format and form: name and bytes.
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     vec![
@@ -253,4 +267,7 @@ pub fn all() -> Vec<(&'static str, Vec<u8>)> {
         ("offsets.vtk", VTK5.as_bytes().to_vec()),
         ("binary.vtk", vtk_binary()),
     ]
+    .into_iter()
+    .chain(VTU.iter().map(|(name, bytes)| (*name, bytes.to_vec())))
+    .collect()
 }

@@ -397,7 +397,7 @@ pub(super) fn pinned_vertices(pin: &PinWhere, mesh: &Mesh) -> Vec<usize> {
 }
 
 /// The mass of each point of a body, kg.
-fn masses(body: &Body) -> OneOrEach<f64> {
+pub(super) fn masses(body: &Body) -> OneOrEach<f64> {
     if let Some(masses) = &body.point_mass {
         return masses.clone();
     }
@@ -429,14 +429,14 @@ fn replaced(error: Error, field: &str) -> Error {
 }
 
 /// Scaled, then rotated, then moved: in float64, rounded once.
-struct Placement {
+pub(super) struct Placement {
     scale: f64,
     rotation: Option<DMat3>,
     position: DVec3,
 }
 
 impl Placement {
-    fn new(body: &Body) -> Self {
+    pub fn new(body: &Body) -> Self {
         let turned = |turn: &super::types::Rotation| {
             // Brought to a sensible length first, so that squaring it neither overflows nor vanishes.
             let axis = DVec3::from_array(turn.axis);
@@ -448,7 +448,8 @@ impl Placement {
         Self { scale, rotation, position: DVec3::from_array(body.position) }
     }
 
-    fn world(&self, local: DVec3) -> Vec3 {
+    /// Where a point of the shape is, m.
+    pub fn world(&self, local: DVec3) -> Vec3 {
         let scaled = local * self.scale;
         let turned = self.rotation.map_or(scaled, |rotation| rotation * scaled);
         (turned + self.position).as_vec3()

@@ -14,7 +14,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::check::{MAX_POINTS, check};
 use super::choices::Numbers;
 use super::suggest::shortened;
-use super::types::{Body, Exception, Scene};
+use super::types::{Body, Exception, Scene, unscaled};
 use crate::build::mesh::{
     ClothMaterial, Mesh, MeshBody, NetMaterial, SoftMaterial, cloth, net, soft_body_within,
 };
@@ -183,10 +183,6 @@ pub struct Net {
     /// Springs that are unlike the others. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub except: Vec<Exception>,
-}
-
-fn unscaled() -> f64 {
-    1.0
 }
 
 /// The mesh that was read for a body, and what was made of it. No part of what the scene says: any two are equal.

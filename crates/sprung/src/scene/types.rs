@@ -1,6 +1,10 @@
 //! What a scene file can say: one struct for each table, one field for each key.
 //!
 //! The doc comments are also the descriptions in the JSON Schema, so they give units and defaults.
+//!
+//! Keys that several tables have, such as `rest_scale`, `cut` and `except`, are written out in each. Serde's `flatten` would say them
+//! once, but it takes a table to pieces before it looks at the values, and by then nobody knows the line that a wrong one stands
+//! in; and of an unknown key it no longer tells which ones are allowed.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -331,6 +335,6 @@ fn standard_gravity() -> [f64; 3] {
     [0.0, -9.81, 0.0]
 }
 
-fn unscaled() -> f64 {
+pub(super) fn unscaled() -> f64 {
     1.0
 }

@@ -193,8 +193,20 @@ impl Crate<'_> {
             let fields = self.fields_of(set);
             let value = |name: &str| fields.iter().find(|(field, _)| *field == name).map(|&(_, value)| value);
             if place.parent.is_none() {
-                layer.metres = value("metersPerUnit").and_then(|rep| self.number(rep));
-                layer.up = value("upAxis").and_then(|rep| self.word(rep));
+                let wrong =
+                    |name: &str, what: &str| Error::new(Code::WrongType, what).at_field(name.to_owned());
+                if let Some(rep) = value("metersPerUnit") {
+                    let number = self.number(rep);
+                    layer.metres = Some(
+                        number
+                            .ok_or_else(|| wrong("metersPerUnit", "is no number of a kind that is read"))?,
+                    );
+                }
+                if let Some(rep) = value("upAxis") {
+                    let word = self.word(rep);
+                    layer.up =
+                        Some(word.ok_or_else(|| wrong("upAxis", "is no word, and must be \"Y\" or \"Z\""))?);
+                }
             } else if kind == PRIM && !place.is_property {
                 let prim = Prim {
                     name: self.tokens[place.name].clone(),

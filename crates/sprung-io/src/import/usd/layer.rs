@@ -43,6 +43,7 @@ impl Prim {
 pub(super) struct Layer {
     /// `metersPerUnit`; that of USD is 0.01 where nothing is said.
     pub metres: Option<f64>,
+    /// `upAxis`; that of USD is Y where nothing is said.
     pub up: Option<String>,
     pub prims: Vec<Prim>,
 }

@@ -14,6 +14,7 @@ use sprung::{Code, DVec3, Error, Result};
 
 use self::layer::{Layer, Prim};
 use super::bytes::{Bytes, Order};
+use super::words::quoted;
 use super::{Companions, Groups, malformed};
 
 /// USD's unit where a file does not say: centimetres.
@@ -139,12 +140,17 @@ impl Reading<'_> {
     fn unit(&self) -> Result<DMat4> {
         let metres = self.layer.metres.unwrap_or(METRES);
         if !(metres.is_finite() && metres > 0.0) {
-            return Err(Error::new(Code::OutOfRange, format!("says that its unit is {metres} m"))
-                .at_field("metersPerUnit"));
+            let sentence =
+                format!("says that its unit is {metres} m, and it must be a finite number above 0");
+            return Err(Error::new(Code::OutOfRange, sentence).at_field("metersPerUnit"));
         }
         let turn = match self.layer.up.as_deref() {
             Some("Z") => [Vector::X, -Vector::Z, Vector::Y],
-            _ => [Vector::X, Vector::Y, Vector::Z],
+            Some("Y") | None => [Vector::X, Vector::Y, Vector::Z],
+            Some(other) => {
+                let sentence = format!("is \"{}\", and must be \"Y\" or \"Z\"", quoted(other.as_bytes()));
+                return Err(Error::new(Code::OutOfRange, sentence).at_field("upAxis"));
+            }
         };
         let [x, y, z] = turn.map(|axis| (axis * metres).extend(0.0));
         Ok(DMat4::from_cols(x, y, z, glam::DVec4::W))
@@ -209,7 +215,7 @@ impl Reading<'_> {
             }
             _ => self.colourless = true,
         }
-        let group = self.groups.named(&super::words::quoted(prim.name.as_bytes()));
+        let group = self.groups.named(&quoted(prim.name.as_bytes()));
         let vertices: Vec<u32> = (first..first + count as u32).collect();
         self.groups.extend(group, &vertices)
     }
@@ -222,7 +228,7 @@ impl Reading<'_> {
         chosen.sort_unstable();
         chosen.dedup();
         let mut chosen = chosen.into_iter().peekable();
-        let group = self.groups.named(&super::words::quoted(prim.name.as_bytes()));
+        let group = self.groups.named(&quoted(prim.name.as_bytes()));
         for (number, face) in self.mesh.faces.iter().enumerate().skip(first_face) {
             if chosen.next_if_eq(&number).is_some() {
                 self.groups.extend(group, face)?;

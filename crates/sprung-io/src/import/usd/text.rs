@@ -1,6 +1,6 @@
 //! Text USD (`.usda`).
 
-use sprung::{Code, Result};
+use sprung::{Code, Error, Result};
 
 use super::layer::{Layer, Prim, Value};
 use crate::import::malformed;
@@ -28,8 +28,8 @@ struct Tokens<'a> {
 }
 
 impl Tokens<'_> {
-    fn error(&self, code: Code, sentence: impl Into<String>) -> sprung::Error {
-        sprung::Error::new(code, sentence).at_line(self.last_line, 1)
+    fn error(&self, code: Code, sentence: impl Into<String>) -> Error {
+        Error::new(code, sentence).at_line(self.last_line, 1)
     }
 
     fn skip(&mut self, count: usize) {
@@ -102,15 +102,17 @@ impl Tokens<'_> {
         Ok(Some((Token::Text(text), line)))
     }
 
-    /// Goes on after the sign that closes the one that was taken last; gives the words on the way, up to a few.
+    /// Goes on after the sign that closes the one that was taken last; gives the words on the way that lie in no other brackets,
+    /// up to a few: names of what a dictionary there holds are not meant.
     fn balanced(&mut self) -> Result<Vec<String>> {
         let (mut depth, mut words) = (1, Vec::new());
         while depth > 0 {
             match self.next()? {
                 Some(Token::Sign(b'(' | b'[' | b'{')) => depth += 1,
                 Some(Token::Sign(b')' | b']' | b'}')) => depth -= 1,
-                Some(Token::Word(word)) if words.len() < 1000 => words.push(word),
-                Some(Token::Text(text)) if words.len() < 1000 => words.push(text),
+                Some(Token::Word(word) | Token::Text(word)) if depth == 1 && words.len() < 1000 => {
+                    words.push(word);
+                }
                 Some(_) => {}
                 None => return Err(self.error(Code::Syntax, "ends before its last bracket is closed")),
             }
@@ -165,9 +167,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Layer> {
     if tokens.is_next(b'(')? {
         tokens.next()?;
         let words = tokens.balanced()?;
-        let after = |name: &str| words.iter().position(|word| word == name).and_then(|at| words.get(at + 1));
-        layer.metres = after("metersPerUnit").and_then(|word| word.parse().ok());
-        layer.up = after("upAxis").cloned();
+        let after = |name: &str| {
+            let at = words.iter().position(|word| word == name)?;
+            Some(words.get(at + 1).map_or("", String::as_str))
+        };
+        if let Some(word) = after("metersPerUnit") {
+            let number = word.parse().map_err(|_| {
+                let sentence = format!("is \"{}\", and must be a number", quoted(word.as_bytes()));
+                Error::new(Code::WrongType, sentence).at_field("metersPerUnit")
+            });
+            layer.metres = Some(number?);
+        }
+        layer.up = after("upAxis").map(str::to_owned);
     }
     // The prims around the place that is read.
     let mut inside: Vec<usize> = Vec::new();

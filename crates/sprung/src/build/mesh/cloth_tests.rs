@@ -69,31 +69,45 @@ fn material_energy([xx, zz, xz]: Strain) -> f64 {
     0.5 * 0.375 * MATERIAL.stiffness * (trace * trace + 2.0 * squared)
 }
 
+/// The share of a sheet's area in triangles that are in no pair.
+fn left_over(mesh: &Mesh) -> f64 {
+    let points: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+    let Patches { patches, .. } = Patches::new(mesh, &points, &mesh.positions);
+    let area = |only: bool| -> f64 {
+        patches.iter().filter(|patch| !only || patch.segments.len() == 3).map(|patch| patch.area).sum()
+    };
+    area(true) / area(false)
+}
+
 #[test]
 fn irregular_triangles_hold_the_energy_of_the_material() {
     let strains: [Strain; 4] = [[1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for (side, seed) in [(6, 1), (12, 2), (24, 3)] {
-        let body = cloth(&irregular(side, seed), &MATERIAL).expect("sound");
+        let mesh = irregular(side, seed);
+        let body = cloth(&mesh, &MATERIAL).expect("sound");
         for strain in strains {
             let ratio = energy(&body, strain) / material_energy(strain);
-            // Uniform stretching is exact in triangles of any shape. Another strain is so in the pairs that make a quad; in those
-            // left over the sides point where they happen to: Σ(nᵀεn)² lies between 0.6 and 1.8 of its mean for right-angled
-            // triangles, and their sum over the sheet nearer.
-            let bound = if strain[0] == strain[1] && strain[2] == 0.0 { 1e-12 } else { 0.1 };
+            // Uniform stretching is exact in triangles of any shape, and another strain in the pairs that make a quad. In those left
+            // over, a tenth of the sheet, sides point where they happen to. If each had two along the axes and the third halfway, it
+            // would hold 10/9 of the energy of a stretch along one of these, and 2/3 of that of a shear: off by a third of the share
+            // that is left over. So it is in the mean (0.30, 0.25 and 0.23 of the share in shear, of 32 sheets each), and these three
+            // sheets are within it, by 0.15, 0.27 and 0.22. No bound for all: where corners are moved so far, some sheets were
+            // off by twice as much, up to 0.04, 0.03 and 0.03 of the whole.
+            let bound =
+                if strain[0] == strain[1] && strain[2] == 0.0 { 1e-12 } else { left_over(&mesh) / 3.0 };
             assert!((ratio - 1.0).abs() <= bound, "{side} {strain:?}: {ratio}");
         }
     }
 }
 
-/// Quads that are no squares: the isotropic membrane, whatever the strain.
-#[test]
-fn irregular_quads_are_isotropic() {
-    let side = 7;
-    let mut random = Random(11);
+/// A unit square of quads, its inner points moved along each axis by up to `shift` sides of a quad.
+fn quads(side: u32, shift: f64, seed: u64) -> Mesh {
+    let mut random = Random(seed);
     let mut mesh = Mesh::default();
     for i in 0..=side {
         for j in 0..=side {
-            let mut moved = |k: u32| if k == 0 || k == side { 0.0 } else { 0.2 * (random.next() - 0.5) };
+            let mut moved =
+                |k: u32| if k == 0 || k == side { 0.0 } else { 2.0 * shift * (random.next() - 0.5) };
             let (x, z) = (f64::from(i) + moved(i), f64::from(j) + moved(j));
             mesh.positions.push(DVec3::new(x, 0.0, z) / f64::from(side));
         }
@@ -104,14 +118,39 @@ fn irregular_quads_are_isotropic() {
             mesh.faces.push(&[at(0, 0), at(0, 1), at(1, 1), at(1, 0)]);
         }
     }
-    let body = cloth(&mesh, &MATERIAL).expect("sound");
-    for strain in [[1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.8, 0.4]] {
+    mesh
+}
+
+/// Quads that are no squares: the isotropic membrane, whatever the strain, but for a share of the second order.
+#[test]
+fn irregular_quads_are_isotropic() {
+    let strains = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.8, 0.4]];
+    let error = |shift: f64| {
+        let mut squares = 0.0;
+        for seed in 1..=20 {
+            let body = cloth(&quads(28, shift, seed * 0x9E37_79B9), &MATERIAL).expect("sound");
+            // Uniform stretching is exact.
+            assert!((energy(&body, [1.0, 1.0, 0.0]) / material_energy([1.0, 1.0, 0.0]) - 1.0).abs() < 1e-12);
+            for strain in strains {
+                let off = energy(&body, strain) / material_energy(strain) - 1.0;
+                squares += off * off / (20.0 * strains.len() as f64);
+            }
+        }
+        squares.sqrt()
+    };
+    // In a patch that is nearly a square the equation of sin4θ nearly says nothing: moved by δ sides, corners change what it asks
+    // for by δ² (the terms of first order cancel) and what springs can do for it by δ. Where that would take springs that push,
+    // it is met in part, and so something of the second order is missing. Of sheets with δ = 0.1, 0.05 and 0.025 it is, root mean
+    // square, 0.32, 0.35 and 0.45 δ²; the half is stated, the order is what follows.
+    for shift in [0.1, 0.05, 0.025] {
+        let off = error(shift);
+        assert!(off < 0.5 * shift * shift, "{shift}: {off}");
+    }
+    // One small sheet, whose few patches do not average out: at worst of twenty 1.4 δ² were found, and of this one this is.
+    let body = cloth(&quads(7, 0.1, 11), &MATERIAL).expect("sound");
+    for strain in strains {
         let ratio = energy(&body, strain) / material_energy(strain);
-        // Uniform stretching is exact. In a patch that is nearly a square the equation of sin4θ nearly says nothing, and to meet
-        // it would take springs that push: there it is met in part. What is missing is of the second order in how far corners
-        // are from those of a square, a tenth of a side here, for a single patch.
-        let bound = if strain == [1.0, 1.0, 0.0] { 1e-12 } else { 0.01 };
-        assert!((ratio - 1.0).abs() < bound, "{strain:?}: {ratio}");
+        assert!((ratio - 1.0).abs() < 0.01, "{strain:?}: {ratio}");
     }
 }
 

@@ -172,6 +172,11 @@ impl Mesh {
         Ok(())
     }
 
+    /// The box around all vertices, in the file's units: its smallest and largest coordinates.
+    pub(crate) fn extent(&self) -> Option<[DVec3; 2]> {
+        weld::extent(self.positions.iter().copied())
+    }
+
     /// The same mesh with all coordinates times `scale`.
     #[must_use]
     pub fn scaled(mut self, scale: f64) -> Self {

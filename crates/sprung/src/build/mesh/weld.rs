@@ -26,11 +26,13 @@ pub(super) struct Welded {
 /// is near enough, so that the result follows from the order of the file alone.
 pub(super) fn weld(mesh: &Mesh, tolerance: Option<f64>) -> Welded {
     let vertices = &mesh.positions;
-    let diagonal = extent(vertices.iter().copied()).map_or(0.0, |[low, high]| (high - low).length());
+    let [low, high] = mesh.extent().unwrap_or_default();
+    let diagonal = (high - low).length();
     let tolerance = tolerance.unwrap_or(MERGE_SHARE * diagonal);
-    // A cell is as wide as the tolerance, so only the cells around a vertex have to be looked through. The table is asked,
+    // A cell is as wide as the tolerance, so only the cells around a vertex have to be looked through. They are counted from the
+    // mesh's own corner: from an origin far away all vertices might lie in the last one that can be numbered. The table is asked,
     // and never gone through: its order does not matter.
-    let cell_of = |p: DVec3| (p / tolerance).floor().to_array().map(|x| x as i64);
+    let cell_of = |p: DVec3| ((p - low) / tolerance).floor().to_array().map(|x| x as i64);
     let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let (mut points, mut point_of) = (Vec::new(), Vec::with_capacity(vertices.len()));
     // With a tolerance of zero, or one below the rounding of the coordinates, there is nothing to find.
@@ -97,6 +99,16 @@ mod tests {
         assert!(welded.merged);
         let apart = weld(&mesh(&[[0.0; 3], [0.0; 3]]), Some(0.0));
         assert_eq!(apart.point_of, [0, 1]);
+    }
+
+    /// The table is laid out from the mesh's own corner: counted from a far origin, all vertices would lie in its last cell.
+    #[test]
+    fn a_mesh_far_away_takes_no_more_than_a_look_each() {
+        let axis = |steps: usize| 1e18 + 1000.0 * steps as f64;
+        let places: Vec<[f64; 3]> =
+            (0..200_000).map(|k| [axis(k / 3600), axis(k / 60 % 60), axis(k % 60)]).collect();
+        let welded = weld(&mesh(&places), None);
+        assert_eq!(welded.points.len(), places.len());
     }
 
     #[test]
