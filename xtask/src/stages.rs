@@ -148,3 +148,20 @@ pub fn files_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
     paths.sort();
     Ok(paths)
 }
+
+/// Copies a folder with all that is in it.
+pub fn copy_folder(from: &Path, to: &Path) -> Outcome {
+    let failed = |error: std::io::Error| format!("{} cannot be copied: {error}", from.display());
+    fs::create_dir_all(to).map_err(failed)?;
+    for entry in fs::read_dir(from).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let copy = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() {
+            copy_folder(&path, &copy)?;
+        } else {
+            fs::copy(&path, &copy)
+                .map_err(|error| format!("{} cannot be copied: {error}", path.display()))?;
+        }
+    }
+    Ok(())
+}

@@ -43,6 +43,7 @@ mod undo;
 
 pub use command::{Beginning, Bring, Command, Edit, Fix, Kept, Pace, Probe, Pull, Running, Source};
 pub use driver::Driver;
+pub use hand::soft_spring;
 pub use handle::Handle;
 pub use options::{DEFAULT_HISTORY_BYTES, Options};
 pub use report::{Comparison, Opened, Report, Sample, Stability, Timeline, Trouble};
