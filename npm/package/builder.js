@@ -1,7 +1,7 @@
 // Points and springs in code.
 
 import { EngineBuilder } from "./engine.js";
-import { call } from "./engine-door.js";
+import { call, free } from "./engine-door.js";
 import { mistake } from "./errors.js";
 import { simulationOf } from "./simulation.js";
 import { choice, material, number, numbers, options, planes, range, text, vector } from "./values.js";
@@ -170,8 +170,9 @@ export class Builder {
 
     dispose() {
         const engine = this.#engine;
+        if (engine === undefined) return;
+        free(engine);
         this.#engine = undefined;
-        if (engine !== undefined) call(() => engine.free());
     }
 
     #call(act) {

@@ -67,6 +67,12 @@ export function call(act) {
     }
 }
 
+/** Gives back what an object has in the engine's memory. */
+export function free(object) {
+    // Of an engine that has stopped nothing can be given back, and nobody needs to hear that when cleaning up.
+    if (fault === undefined) call(() => object.free());
+}
+
 function check() {
     if (loaded === undefined) {
         throw mistake("Unsupported", undefined, "the engine is not loaded yet", "call `await init()` first");

@@ -2,44 +2,37 @@
 
 /** An error: its message is one sentence, as the command `sprung` prints it. */
 export class SprungError extends Error {
-    constructor(message, parts = {}) {
+    constructor(message, parts) {
         super(message);
-        this.name = "SprungError";
-        const { code, sentence = message, file, line, column, field, fix } = parts;
-        Object.assign(this, { code, sentence, file, line, column, field, fix });
+        this.sentence = message;
+        Object.assign(this, parts);
     }
 }
+SprungError.prototype.name = "SprungError";
 
 /** The simulation blew up; its last good state is the current one. */
-export class BlowUpError extends SprungError {
-    constructor(message, parts) {
-        super(message, parts);
-        this.name = "BlowUpError";
-        Object.assign(this, parts.blowUp);
-    }
-}
+export class BlowUpError extends SprungError {}
+BlowUpError.prototype.name = "BlowUpError";
 
-/** The error with these parts. */
-export function errorOf(message, parts) {
-    return parts.blowUp ? new BlowUpError(message, parts) : new SprungError(message, parts);
+/** The error with these parts, as the engine has them. */
+export function errorOf(message, { blowUp, ...parts }) {
+    return blowUp === undefined ? new SprungError(message, parts) : new BlowUpError(message, { ...parts, ...blowUp });
 }
 
 /** An error of our own: what is wrong with a field, and what would mend it. */
 export function mistake(code, field, sentence, fix) {
     const message = `${field === undefined ? "" : `${field}: `}${sentence}${fix === undefined ? "" : `; ${fix}`}`;
-    return new SprungError(message, { code, sentence, field, fix });
+    const parts = Object.entries({ code, sentence, field, fix }).filter(([, part]) => part !== undefined);
+    return new SprungError(message, Object.fromEntries(parts));
 }
 
-/** What crosses to another thread of an error, and back. */
+/** What crosses to another thread of an error. */
 export function packedError(error) {
-    const { message, stack } = error;
-    if (!(error instanceof SprungError)) return { message: String(message ?? error), stack };
-    const parts = { ...error };
-    delete parts.name;
-    if (error instanceof BlowUpError) parts.blowUp = parts;
-    return { message, stack, parts: structuredClone(parts) };
+    const known = error instanceof SprungError ? { ...error } : { code: "Unsupported" };
+    return { message: String(error?.message ?? error), blewUp: error instanceof BlowUpError, parts: known };
 }
 
-export function unpackedError({ message, parts }) {
-    return parts ? errorOf(message, parts) : new SprungError(message, { code: "Unsupported" });
+/** The error that crossed. */
+export function unpackedError({ message, blewUp, parts }) {
+    return blewUp ? new BlowUpError(message, parts) : new SprungError(message, parts);
 }

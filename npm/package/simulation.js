@@ -1,7 +1,7 @@
 // The simulation: the engine's, with arrays that stay.
 
 import { EngineSimulation } from "./engine.js";
-import { call, lend } from "./engine-door.js";
+import { call, free, lend } from "./engine-door.js";
 import { mistake } from "./errors.js";
 import { changes, choice, flag, number, options, planes, range, text, vector } from "./values.js";
 
@@ -214,8 +214,9 @@ export class Simulation {
 
     dispose() {
         const engine = this.#engine;
+        if (engine === undefined) return;
+        free(engine);
         this.#engine = undefined;
-        if (engine !== undefined) call(() => engine.free());
     }
 
     // Inside.

@@ -23,6 +23,7 @@ function grow() {
 test("an array that was kept while memory grew is alive and current", () => {
     const cloth = Simulation.builtin("cloth");
     const { positions, velocities } = cloth;
+    /** @type {Float32Array} */
     let leaked = new Float32Array(1);
     cloth.withViews((views) => {
         leaked = views;
