@@ -71,6 +71,12 @@ pub fn succeeds(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
+/// Whether the compiler has the standard library for a target.
+pub fn has_library(target: &str) -> bool {
+    let library = quiet(&mut program("rustc", &["--print", "target-libdir", "--target", target]));
+    library.is_ok_and(|library| Path::new(String::from_utf8_lossy(&library).trim()).is_dir())
+}
+
 /// A command as a person would type it in the repository's root.
 fn shown(command: &Command) -> String {
     let root = format!("{}/", root().display());

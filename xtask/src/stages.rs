@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, cargo, program, read, root, run, succeeds, target};
+use crate::shell::{Outcome, cargo, has_library, program, read, root, run, succeeds, target};
+use crate::wasm;
 
 pub fn fmt() -> Outcome {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
@@ -20,7 +21,13 @@ pub fn clippy() -> Outcome {
         "--",
         "-D",
         "warnings",
-    ]))
+    ]))?;
+    if !has_library(wasm::TARGET) {
+        println!("not looked at as a page's: for that, `rustup target add {}`", wasm::TARGET);
+        return Ok(());
+    }
+    let page = ["clippy", "--locked", "-p", "sprung-wasm", "--target", wasm::TARGET, "--", "-D", "warnings"];
+    run(&mut cargo(&page))
 }
 
 pub fn doc() -> Outcome {

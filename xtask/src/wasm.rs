@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::shell::{Outcome, cargo, program, quiet, read_text, root, run, succeeds, target};
+use crate::shell::{Outcome, cargo, has_library, program, quiet, read_text, root, run, succeeds, target};
 
 /// The target: no operating system at all.
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -77,7 +77,7 @@ enum Compiler {
 impl Compiler {
     /// The one that is here. If rustup offers the library, it is installed.
     fn here() -> Outcome<Self> {
-        if has_library() {
+        if has_library(TARGET) {
             return Ok(Self::Own);
         }
         if succeeds(&mut program("rustup", &["--version"]))
@@ -117,11 +117,6 @@ impl Compiler {
 }
 
 const DEBIANS_RUSTC: &str = "/usr/bin/rustc";
-
-fn has_library() -> bool {
-    let library = quiet(&mut program("rustc", &["--print", "target-libdir", "--target", TARGET]));
-    library.is_ok_and(|library| Path::new(String::from_utf8_lossy(&library).trim()).is_dir())
-}
 
 /// wasm-bindgen from the path, or our own below the target folder: of the very version that the crate has.
 fn wasm_bindgen() -> Outcome<PathBuf> {
