@@ -4,7 +4,7 @@ import { BufferAttribute, BufferGeometry, GridHelper, Mesh, MeshPhysicalMaterial
 
 import { play, pull, say, stage } from "./stage.js";
 
-const { scene, draw, ...view } = stage({ eye: [32, 12, 48], centre: [0, -3, 0] });
+const { scene, draw, ...view } = stage({ eye: [46, 16, 70], centre: [0, -2, 0] });
 await init();
 const jelly = Simulation.builtin("jelly");
 

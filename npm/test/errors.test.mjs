@@ -38,6 +38,12 @@ for (const { about, scene, builtin, set, sentence } of cases) {
     });
 }
 
+test("a scene with a mesh says that nobody can read it here", async () => {
+    await init();
+    const scene = '[[body]]\nname = "towel"\nmesh = "towel.obj"\ncloth = { density = 0.4, stiffness = 150 }\n';
+    assert.throws(() => Simulation.parse(scene), { name: "SprungError", code: "Unreadable", field: "body[0].mesh", line: 3 });
+});
+
 test("what is of the wrong kind is said as clearly", async () => {
     await init();
     const cloth = Simulation.builtin("cloth");

@@ -1,6 +1,9 @@
 // Memory: arrays outlive its growth, views are only lent, and what is disposed of is used again.
 import assert from "node:assert/strict";
+import { setImmediate } from "node:timers/promises";
 import { test } from "node:test";
+import { setFlagsFromString } from "node:v8";
+import { runInNewContext } from "node:vm";
 
 import { Builder, init, memoryBytes, Simulation } from "sprung";
 
@@ -95,6 +98,22 @@ test("ten thousand simulations that were disposed of leave nothing behind", () =
     for (let time = 0; time < 100; time++) once();
     const before = memoryBytes();
     for (let time = 0; time < 10_000; time++) once();
+    assert.equal(memoryBytes(), before);
+});
+
+test("simulations that were forgotten are given back with the garbage", async () => {
+    setFlagsFromString("--expose-gc");
+    const collect = runInNewContext("gc");
+    const forget = async (times) => {
+        for (let time = 0; time < times; time++) {
+            Simulation.builtin("jelly").positions;
+            collect();
+            await setImmediate(); // memory is given back between two turns
+        }
+    };
+    await forget(20);
+    const before = memoryBytes();
+    await forget(100);
     assert.equal(memoryBytes(), before);
 });
 

@@ -52,7 +52,7 @@ fn check(package: &Path) -> Outcome {
     for part in ["test", "examples"] {
         copy_folder(&root().join("npm").join(part), &folder.join(part))?;
     }
-    for file in ["package.json", "package-lock.json", "tsconfig.json"] {
+    for file in ["package.json", "package-lock.json", "tsconfig.json", "bench.mjs"] {
         let copied = fs::copy(root().join("npm").join(file), folder.join(file));
         copied.map_err(|error| format!("npm/{file} cannot be copied: {error}"))?;
     }
