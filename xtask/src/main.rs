@@ -8,9 +8,11 @@
 mod fuzz;
 mod instructions;
 mod levels;
+mod npm;
 mod readers;
 mod shell;
 mod stages;
+mod wasm;
 mod window;
 mod window_story;
 
@@ -46,6 +48,11 @@ const STAGES: &[Stage] = &[
         run: instructions::instructions,
     },
     Stage { name: "levels", about: "the same bits with NEON and in WebAssembly", run: levels::levels },
+    Stage {
+        name: "npm",
+        about: "the npm package in target/npm/sprung: its tests in Node.js, with the same bits",
+        run: npm::npm,
+    },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
     Stage {

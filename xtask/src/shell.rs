@@ -61,9 +61,20 @@ pub fn quiet(command: &mut Command) -> Outcome<Vec<u8>> {
     Err(format!("`{}` ended with {}: {}", shown(command), output.status, said.trim()))
 }
 
+/// A file's text.
+pub fn read_text(path: &Path) -> Outcome<String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{} cannot be read: {error}", path.display()))
+}
+
 /// Whether a command starts and ends well; what it says is not shown.
 pub fn succeeds(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
+/// Whether the compiler has the standard library for a target.
+pub fn has_library(target: &str) -> bool {
+    let library = quiet(&mut program("rustc", &["--print", "target-libdir", "--target", target]));
+    library.is_ok_and(|library| Path::new(String::from_utf8_lossy(&library).trim()).is_dir())
 }
 
 /// A command as a person would type it in the repository's root.

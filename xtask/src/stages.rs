@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, cargo, program, read, root, run, succeeds, target};
+use crate::shell::{Outcome, cargo, has_library, program, read, root, run, succeeds, target};
+use crate::wasm;
 
 pub fn fmt() -> Outcome {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
@@ -20,7 +21,13 @@ pub fn clippy() -> Outcome {
         "--",
         "-D",
         "warnings",
-    ]))
+    ]))?;
+    if !has_library(wasm::TARGET) {
+        println!("not looked at as a page's: for that, `rustup target add {}`", wasm::TARGET);
+        return Ok(());
+    }
+    let page = ["clippy", "--locked", "-p", "sprung-wasm", "--target", wasm::TARGET, "--", "-D", "warnings"];
+    run(&mut cargo(&page))
 }
 
 pub fn doc() -> Outcome {
@@ -147,4 +154,21 @@ pub fn files_in(folder: &Path) -> Outcome<Vec<PathBuf>> {
         entries.flatten().map(|entry| entry.path()).filter(|path| path.is_file()).collect();
     paths.sort();
     Ok(paths)
+}
+
+/// Copies a folder with all that is in it.
+pub fn copy_folder(from: &Path, to: &Path) -> Outcome {
+    let failed = |error: std::io::Error| format!("{} cannot be copied: {error}", from.display());
+    fs::create_dir_all(to).map_err(failed)?;
+    for entry in fs::read_dir(from).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let copy = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() {
+            copy_folder(&path, &copy)?;
+        } else {
+            fs::copy(&path, &copy)
+                .map_err(|error| format!("{} cannot be copied: {error}", path.display()))?;
+        }
+    }
+    Ok(())
 }

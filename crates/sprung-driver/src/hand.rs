@@ -66,8 +66,12 @@ impl Hand {
     }
 }
 
-/// Stiffness (N/m) and damping (N·s/m) of a soft hand at a point that can move.
-pub(crate) fn soft_spring(model: &Model, params: &Params, positions: &[Vec3], point: usize) -> (f32, f32) {
+/// Stiffness (N/m) and damping (N·s/m) of a soft hand at a point that can move: as stiff as all springs at the point
+/// together, as far as dt stays within the limit that it is within.
+///
+/// # Panics
+/// If there is no such point, or if the parts are not of one model.
+pub fn soft_spring(model: &Model, params: &Params, positions: &[Vec3], point: usize) -> (f32, f32) {
     let mass = f64::from(params.point_mass[point]);
     let springs = model.springs_at(point).iter().map(|&spring| spring as usize);
     let around: f64 = springs

@@ -43,6 +43,16 @@ impl Scene {
             .map(|built| (built.model, built.params, built.state))
     }
 
+    /// Refuses a scene whose lattices and meshes make more springs than it allows, without building it: [`build`](Self::build)
+    /// does the same, but a caller may want to ask for memory before that.
+    ///
+    /// # Errors
+    /// [`Code::TooLarge`](crate::Code::TooLarge), with the field and its line.
+    pub fn check_spring_count(&self) -> Result<()> {
+        let checked = Assembly::new(self, self.spring_limit()).refuse_too_many_springs();
+        checked.map_err(|error| self.origin.locate(error))
+    }
+
     /// As [`build`](Self::build), and knows which springs each group made.
     pub(super) fn build_in_groups(&self) -> Result<Built> {
         self.built(MAX_POINTS, self.spring_limit())
