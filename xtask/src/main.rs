@@ -10,9 +10,11 @@ mod instructions;
 mod levels;
 mod npm;
 mod readers;
+mod serve;
 mod shell;
 mod stages;
 mod wasm;
+mod web;
 mod window;
 mod window_story;
 
@@ -53,6 +55,7 @@ const STAGES: &[Stage] = &[
         about: "the npm package in target/npm/sprung: its tests in Node.js, with the same bits",
         run: npm::npm,
     },
+    Stage { name: "web", about: "the page in web/dist: its tests in a browser", run: web::web },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
     Stage {
@@ -96,6 +99,7 @@ fn main() -> ExitCode {
             return ExitCode::SUCCESS;
         }
         ["ci"] => STAGES.iter().collect(),
+        ["web", "--serve"] => return end(web::serve()),
         [name] => match STAGES.iter().find(|stage| stage.name == name) {
             Some(stage) => vec![stage],
             None => {
@@ -109,6 +113,17 @@ fn main() -> ExitCode {
         }
     };
     run(&chosen)
+}
+
+/// The exit status of what is no stage.
+fn end(outcome: Outcome) -> ExitCode {
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("xtask: {reason}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// Runs stages until one fails, then sums up.
@@ -153,7 +168,7 @@ fn help() -> String {
     let mut text =
         "What continuous integration runs.\n\n  cargo xtask ci       all stages below, in this order\n"
             .to_owned();
-    text += "  cargo xtask STAGE    one of them\n\nStages:\n";
+    text += "  cargo xtask STAGE    one of them\n  cargo xtask web --serve  the page, on this machine\n\nStages:\n";
     for stage in STAGES {
         text += &format!("  {:<15} {}\n", stage.name, stage.about);
     }

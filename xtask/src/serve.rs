@@ -24,7 +24,8 @@ const TYPES: [(&str, &str); 8] = [
 
 /// Serves a folder until Ctrl-C.
 pub fn serve(folder: &Path) -> Outcome {
-    let server = Server::http(ADDRESS).map_err(|error| format!("{ADDRESS} cannot be listened on: {error}"))?;
+    let server =
+        Server::http(ADDRESS).map_err(|error| format!("{ADDRESS} cannot be listened on: {error}"))?;
     println!("sprung is at http://{ADDRESS}; Ctrl-C ends it");
     for request in server.incoming_requests() {
         let path = request.url().split(['?', '#']).next().unwrap_or("").trim_start_matches('/').to_owned();
@@ -34,8 +35,12 @@ pub fn serve(folder: &Path) -> Outcome {
         let answered = match found {
             Some(bytes) => {
                 let ending = Path::new(&path).extension().and_then(|it| it.to_str()).unwrap_or("");
-                let kind = TYPES.iter().find(|(of, _)| *of == ending).map_or("application/octet-stream", |(_, kind)| kind);
-                let header = Header::from_bytes("Content-Type", kind).map_err(|()| "a header is wrong".to_owned())?;
+                let kind = TYPES
+                    .iter()
+                    .find(|(of, _)| *of == ending)
+                    .map_or("application/octet-stream", |(_, kind)| kind);
+                let header =
+                    Header::from_bytes("Content-Type", kind).map_err(|()| "a header is wrong".to_owned())?;
                 request.respond(Response::from_data(bytes).with_header(header))
             }
             None => request.respond(Response::from_string("there is no such file").with_status_code(404)),

@@ -26,8 +26,9 @@ pub fn clippy() -> Outcome {
         println!("not looked at as a page's: for that, `rustup target add {}`", wasm::TARGET);
         return Ok(());
     }
-    let page = ["clippy", "--locked", "-p", "sprung-wasm", "--target", wasm::TARGET, "--", "-D", "warnings"];
-    run(&mut cargo(&page))
+    let packages = ["-p", "sprung-wasm", "-p", "sprung-app"];
+    let page = ["clippy", "--locked", "--target", wasm::TARGET];
+    run(cargo(&page).args(packages).args(["--", "-D", "warnings"]))
 }
 
 pub fn doc() -> Outcome {

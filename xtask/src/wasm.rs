@@ -34,38 +34,15 @@ impl Build<'_> {
     }
 }
 
-/// Makes of what the compiler built a module that JavaScript can load: `NAME_bg.wasm` and `NAME.js` in the folder. It is then
-/// made smaller, if wasm-opt is there.
+/// Makes of what the compiler built a module that JavaScript can load: `NAME_bg.wasm` and `NAME.js` in the folder.
+///
+/// wasm-opt is left out: compressed, it makes modules 4 % smaller at the most, and version 108, which Debian 12 has, breaks those
+/// with references without a word.
 pub fn bind(built: &Path, folder: &Path, name: &str) -> Outcome {
     let arguments =
         ["--target", "web", "--no-typescript", "--omit-default-module-path", "--remove-name-section"];
     let mut command = program(wasm_bindgen()?, &arguments);
-    run(command
-        .args(["--remove-producers-section", "--out-name", name, "--out-dir"])
-        .arg(folder)
-        .arg(built))?;
-    optimise(&folder.join(format!("{name}_bg.wasm")))
-}
-
-fn optimise(module: &Path) -> Outcome {
-    if !succeeds(&mut program("wasm-opt", &["--version"])) {
-        println!("no wasm-opt here (package binaryen): the module stays as the compiler made it, 4 % larger");
-        return Ok(());
-    }
-    // All that the compiler and wasm-bindgen use.
-    let arguments = ["-O3", "--enable-simd", "--enable-bulk-memory", "--enable-nontrapping-float-to-int"];
-    let mut command = program("wasm-opt", &arguments);
-    command.args([
-        "--enable-sign-ext",
-        "--enable-mutable-globals",
-        "--enable-reference-types",
-        "--enable-multivalue",
-    ]);
-    // It writes nothing when it fails, as old versions do on what they do not know.
-    if run(command.arg(module).arg("-o").arg(module)).is_err() {
-        println!("the module stays as the compiler made it; a newer wasm-opt would make it 4 % smaller");
-    }
-    Ok(())
+    run(command.args(["--remove-producers-section", "--out-name", name, "--out-dir"]).arg(folder).arg(built))
 }
 
 /// Where the compiler and the library for WebAssembly come from.

@@ -87,16 +87,22 @@ fn describe(folder: &Path) -> Outcome {
     files.push("sizes.json".to_owned());
     let quoted: Vec<String> = files.iter().map(|name| format!("  \"{name}\",\n")).collect();
     let build = format!("sprung {} {:016x}", env!("CARGO_PKG_VERSION"), build.finish());
-    write("build.js", format!("self.BUILD = \"{build}\";\nself.FILES = [\n  \"./\",\n{}];\n", quoted.concat()))?;
+    write(
+        "build.js",
+        format!("self.BUILD = \"{build}\";\nself.FILES = [\n  \"./\",\n{}];\n", quoted.concat()),
+    )?;
     if compressed > MOST_BYTES {
-        return Err(format!("the page has {compressed} bytes to the first motion, and at most {MOST_BYTES} are allowed"));
+        return Err(format!(
+            "the page has {compressed} bytes to the first motion, and at most {MOST_BYTES} are allowed"
+        ));
     }
     Ok(())
 }
 
 /// The files of a folder and those below, by their paths from `root`, with `/` between folders.
 fn gather(folder: &Path, root: &Path, files: &mut Vec<String>) -> Outcome {
-    let entries = fs::read_dir(folder).map_err(|error| format!("{} cannot be read: {error}", folder.display()))?;
+    let entries =
+        fs::read_dir(folder).map_err(|error| format!("{} cannot be read: {error}", folder.display()))?;
     for path in entries.flatten().map(|entry| entry.path()) {
         if path.is_dir() {
             gather(&path, root, files)?;
@@ -121,8 +127,18 @@ fn licences() -> Outcome<String> {
     let mut lines = Vec::new();
     for package in [APP.package, ENGINE.package] {
         let tree = read(&mut cargo(&[
-            "tree", "--locked", "--package", package, "--target", wasm::TARGET, "--edges", "normal", "--prefix", "none",
-            "--format", "{p}\t{l}\t{r}",
+            "tree",
+            "--locked",
+            "--package",
+            package,
+            "--target",
+            wasm::TARGET,
+            "--edges",
+            "normal",
+            "--prefix",
+            "none",
+            "--format",
+            "{p}\t{l}\t{r}",
         ]))?;
         lines.extend(String::from_utf8_lossy(&tree).lines().map(|line| {
             // Where the crate lies on this machine is of no interest, and it is marked where it was named before.
@@ -144,11 +160,13 @@ fn check(page: &Path) -> Outcome {
     let modules = target().join("web-tests");
     fs::create_dir_all(&modules).map_err(|error| format!("{} cannot be made: {error}", modules.display()))?;
     for name in ["package.json", "package-lock.json"] {
-        fs::copy(folder.join(name), modules.join(name)).map_err(|error| format!("{name} cannot be copied: {error}"))?;
+        fs::copy(folder.join(name), modules.join(name))
+            .map_err(|error| format!("{name} cannot be copied: {error}"))?;
     }
     for path in files_in(&folder)? {
         let name = path.file_name().unwrap_or_default();
-        fs::copy(&path, modules.join(name)).map_err(|error| format!("{} cannot be copied: {error}", path.display()))?;
+        fs::copy(&path, modules.join(name))
+            .map_err(|error| format!("{} cannot be copied: {error}", path.display()))?;
     }
     run(program("npm", &["ci", "--no-audit", "--no-fund", "--ignore-scripts"]).current_dir(&modules))?;
     run(program("node", &["--test", "--test-reporter=spec", "page.test.mjs"])

@@ -182,7 +182,9 @@ impl App {
                 let theme = &mut state.appearance.theme;
                 *theme = if *theme == Theme::Light { Theme::Dark } else { Theme::Light };
             }
-            Action::Open | Action::Save | Action::Checkpoint | Action::Motion => self.cards.file(action, state),
+            Action::Open | Action::Save | Action::Checkpoint | Action::Motion => {
+                self.cards.file(action, state)
+            }
             Action::Picture | Action::Record => self.view.save(action, state),
             #[cfg(target_arch = "wasm32")]
             Action::Link => match link::link(&state.report, &state.camera) {

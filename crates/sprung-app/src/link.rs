@@ -65,7 +65,9 @@ pub fn link(report: &Report, view: &Turntable) -> Result<String> {
         if let Some(mesh) = mesh_of(&report.opened.scene) {
             let sentence =
                 format!("cannot be a link: the scene has the mesh {mesh}, and a link holds no files");
-            return Err(Error::new(Code::Unsupported, sentence).with_fix("send the scene's file and its meshes"));
+            return Err(
+                Error::new(Code::Unsupported, sentence).with_fix("send the scene's file and its meshes")
+            );
         }
         let packed = BASE64.encode(compress_to_vec(text.as_bytes(), EFFORT));
         write!(link, "&name={}&toml={packed}", plain(name))
@@ -90,7 +92,9 @@ pub fn read(fragment: &str) -> Result<Option<Link>> {
     if fragment.is_empty() {
         return Ok(None);
     }
-    parsed(fragment).map(Some).map_err(|error| if error.place().file.is_some() { error } else { error.in_file("the link") })
+    parsed(fragment)
+        .map(Some)
+        .map_err(|error| if error.place().file.is_some() { error } else { error.in_file("the link") })
 }
 
 fn parsed(fragment: &str) -> Result<Link> {
@@ -108,10 +112,8 @@ fn parsed(fragment: &str) -> Result<Link> {
             "toml" => &mut toml,
             "view" => &mut view,
             _ => {
-                let sentence = format!(
-                    "says \"{}\", and a link may say v, scene, name, toml and view",
-                    shortened(key)
-                );
+                let sentence =
+                    format!("says \"{}\", and a link may say v, scene, name, toml and view", shortened(key));
                 return Err(Error::new(Code::UnknownKey, sentence));
             }
         };
@@ -133,7 +135,9 @@ fn parsed(fragment: &str) -> Result<Link> {
             }
             (Source { name: name.clone(), scene }, Origin::Other(name))
         }
-        (Some(_), Some(_)) => return Err(Error::new(Code::Conflict, "has two scenes: one by name and one as text")),
+        (Some(_), Some(_)) => {
+            return Err(Error::new(Code::Conflict, "has two scenes: one by name and one as text"));
+        }
         (None, None) => return Err(Error::new(Code::MissingField, "has no scene")),
     };
     let view = view.map(read_view).transpose()?;
@@ -156,7 +160,10 @@ fn unpacked(packed: &str) -> Result<String> {
 fn read_view(text: &str) -> Result<Turntable> {
     let numbers: Vec<f32> = text.split(',').filter_map(|number| number.parse().ok()).collect();
     let refused = || {
-        let sentence = format!("has the view {}, which must be six numbers: a target, a distance above 0, two angles", shortened(text));
+        let sentence = format!(
+            "has the view {}, which must be six numbers: a target, a distance above 0, two angles",
+            shortened(text)
+        );
         Error::new(Code::OutOfRange, sentence)
     };
     let [x, y, z, distance, azimuth, elevation] = numbers[..] else { return Err(refused()) };
@@ -239,7 +246,10 @@ mod tests {
         let cases: [(&str, &str); 12] = [
             ("v=1", "the link: has no scene"),
             ("scene=jelly&scene=chain", "the link: says scene twice"),
-            ("scene=jelly&evil=1", "the link: says \"evil\", and a link may say v, scene, name, toml and view"),
+            (
+                "scene=jelly&evil=1",
+                "the link: says \"evil\", and a link may say v, scene, name, toml and view",
+            ),
             ("scene=jely", "the link: there is no built-in scene \"jely\""),
             ("scene=jelly&toml=AA", "the link: has two scenes: one by name and one as text"),
             ("toml=%%%", "the link: is cut or changed: its scene cannot be unpacked"),
@@ -247,8 +257,14 @@ mod tests {
             (&bomb, "the link: is cut or changed: its scene cannot be unpacked"),
             (&format!("name=a/b&{}", toml("dt = -1")), "a-b.toml:1:6: dt: "),
             ("scene=jelly&view=1,2,3", "the link: has the view 1,2,3, which must be six numbers"),
-            ("scene=jelly&view=1,2,3,-4,0,0", "the link: has the view 1,2,3,-4,0,0, which must be six numbers"),
-            ("scene=jelly&view=nan,2,3,4,0,0", "the link: has the view nan,2,3,4,0,0, which must be six numbers"),
+            (
+                "scene=jelly&view=1,2,3,-4,0,0",
+                "the link: has the view 1,2,3,-4,0,0, which must be six numbers",
+            ),
+            (
+                "scene=jelly&view=nan,2,3,4,0,0",
+                "the link: has the view nan,2,3,4,0,0, which must be six numbers",
+            ),
         ];
         for (link, said) in cases {
             let error = read(link).expect_err(link);

@@ -84,7 +84,11 @@ impl Motion {
         let opened = &report.opened;
         let info = RunInfo {
             scene: opened.name.clone(),
-            title: if opened.scene.title.is_empty() { opened.name.clone() } else { opened.scene.title.clone() },
+            title: if opened.scene.title.is_empty() {
+                opened.name.clone()
+            } else {
+                opened.scene.title.clone()
+            },
             model: opened.model.clone(),
             params: (*opened.params).clone(),
             frame_time: 1.0 / f64::from(manner.rate),
@@ -129,8 +133,10 @@ impl Writing {
         while let Some(&step) = self.steps.get(self.done) {
             let report = state.driver.report();
             if report.opened.serial != self.serial || report.playing {
-                let sentence = "was not saved: the run went on, or another scene was opened, while it was being written";
-                let error = Error::new(Code::Interrupted, sentence).with_fix("save it once more, and wait until it is done");
+                let sentence =
+                    "was not saved: the run went on, or another scene was opened, while it was being written";
+                let error = Error::new(Code::Interrupted, sentence)
+                    .with_fix("save it once more, and wait until it is done");
                 return Err(error.in_file(self.path.display().to_string()));
             }
             if report.now.step != step {
@@ -186,7 +192,8 @@ fn steps(timeline: &Timeline, rate: u32) -> Vec<u64> {
 /// The step nearest to a time.
 fn step_at(timeline: &Timeline, time: f64) -> u64 {
     let part = timeline.clock.iter().rev().find(|(_, begin, _)| *begin <= time);
-    let (step, begin, dt) = part.or(timeline.clock.first()).copied().unwrap_or((timeline.first.0, timeline.first.1, 1.0));
+    let (step, begin, dt) =
+        part.or(timeline.clock.first()).copied().unwrap_or((timeline.first.0, timeline.first.1, 1.0));
     step + ((time - begin) / dt).round().max(0.0) as u64
 }
 

@@ -1,13 +1,12 @@
 //! The door to a window of the operating system.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetupCreateNew, wgpu};
 use egui::{IconData, ViewportBuilder};
-use sprung::scene::Scene;
 use sprung::{Code, Error, Inline, Result, Workers};
-use sprung_driver::{Beginning, Driver, Handle, Source};
+use sprung_driver::{Beginning, Driver, Handle};
 
 use crate::app::App;
 use crate::beginning::first;

@@ -5,10 +5,10 @@ use std::sync::mpsc::{Receiver, channel};
 
 use eframe::{WebOptions, WebRunner, web_sys};
 use js_sys::Uint8Array;
-use wasm_bindgen::closure::Closure;
-use wasm_bindgen::{JsCast, JsValue};
 use sprung::{Code, Error, Result};
 use sprung_driver::{Handle, Options, Post, Word};
+use wasm_bindgen::closure::Closure;
+use wasm_bindgen::{JsCast, JsValue};
 
 use crate::app::App;
 use crate::beginning::first;

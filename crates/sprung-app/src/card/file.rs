@@ -266,7 +266,10 @@ impl FileCard {
             ComboBox::from_id_salt("format").width(80.0).selected_text(shown).show_ui(ui, |ui| {
                 for format in motion::formats() {
                     let text = format!(".{}: {}", format.ending, format.description);
-                    if ui.selectable_label(chosen.is_some_and(|it| it.ending == format.ending), text).clicked() {
+                    if ui
+                        .selectable_label(chosen.is_some_and(|it| it.ending == format.ending), text)
+                        .clicked()
+                    {
                         self.ending = format.ending;
                         self.path = Path::new(&self.path).with_extension(format.ending).display().to_string();
                     }

@@ -60,9 +60,8 @@ impl Dialog {
 /// Puts files where they can be read, in place of those before; gives the one to be opened.
 fn arrive(files: Vec<(String, Vec<u8>)>) -> Option<PathBuf> {
     memory::clear();
-    let is_opened = |name: &str| {
-        Path::new(name).extension().is_some_and(|it| OPENED.iter().any(|ending| it == *ending))
-    };
+    let is_opened =
+        |name: &str| Path::new(name).extension().is_some_and(|it| OPENED.iter().any(|ending| it == *ending));
     let main = files.iter().find(|(name, _)| is_opened(name)).or(files.first());
     let main = main.map(|(name, _)| PathBuf::from(name));
     files.into_iter().for_each(|(name, bytes)| memory::put(Path::new(&name), bytes));

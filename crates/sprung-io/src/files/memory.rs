@@ -21,8 +21,7 @@ struct Files {
     written: Vec<PathBuf>,
 }
 
-static FILES: Mutex<Files> =
-    Mutex::new(Files { named: BTreeMap::new(), written: Vec::new() });
+static FILES: Mutex<Files> = Mutex::new(Files { named: BTreeMap::new(), written: Vec::new() });
 
 /// The name that a file has here: without the folders of its path.
 fn name(path: &Path) -> PathBuf {
@@ -282,7 +281,9 @@ mod tests {
         assert!(open(path).is_err() && take_written().iter().all(|(written, _)| written != path));
         rename(partial, path).expect("it is there");
         let mut text = String::new();
-        open(Path::new("./any/b.csv")).and_then(|mut file| file.read_to_string(&mut text)).expect("it is text");
+        open(Path::new("./any/b.csv"))
+            .and_then(|mut file| file.read_to_string(&mut text))
+            .expect("it is text");
         assert_eq!(text, "some more");
         let written: Vec<_> = take_written().into_iter().filter(|(written, _)| written == path).collect();
         assert_eq!(written, [(path.to_owned(), b"some more".to_vec())]);
