@@ -264,11 +264,43 @@ test("a hostile link is refused with a sentence, and the page goes on", async ()
 test("the last scene comes back, with what was changed in it", async () => {
   const { context, page, wrong } = await opened("WebGL2", { fragment: "#scene=bridge" });
   await titled(page, "bridge – sprung");
-  await page.evaluate(() => dispatchEvent(new Event("beforeunload")));
-  await page.goto(`${address}licences.txt`);
+  // What is kept is kept when one goes.
+  await page.goto(`${address}icon.svg`);
   await page.goto(address);
   await page.waitForSelector("#loading", { state: "hidden", timeout: 120_000 });
   await titled(page, "bridge – sprung");
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test("every scene has the bits of the native program, in this browser too", async () => {
+  const { context, page, wrong } = await opened();
+  const goldens = JSON.parse(await readFile(join(ROOT, "crates/sprung/goldens.json"), "utf8"));
+  const found = await page.evaluate(async (goldens) => {
+    const engine = await import("./engine.js");
+    await engine.default({ module_or_path: "engine_bg.wasm" });
+    const found = {};
+    for (const [name, hashes] of Object.entries(goldens)) {
+      const simulation = engine.EngineSimulation.builtin(name, []);
+      found[name] = {};
+      let taken = 0;
+      for (const step of Object.keys(hashes)) {
+        simulation.step(Number(step) - taken);
+        taken = Number(step);
+        found[name][step] = simulation.stateHash();
+      }
+      simulation.free();
+    }
+    return found;
+  }, goldens);
+  const version = browsers.WebGL2.version();
+  console.log(`${"scene".padEnd(12)} ${"step".padStart(5)}  ${"native".padEnd(16)}  Chromium ${version}`);
+  for (const [name, hashes] of Object.entries(goldens)) {
+    for (const [step, native] of Object.entries(hashes)) {
+      console.log(`${name.padEnd(12)} ${step.padStart(5)}  ${native}  ${found[name][step]}`);
+    }
+  }
+  assert.deepEqual(found, goldens);
   assert.deepEqual(wrong, []);
   await context.close();
 });

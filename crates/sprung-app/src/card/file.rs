@@ -301,17 +301,26 @@ impl FileCard {
     /// The field for a path, the system's dialog, and the button; gives whether the path is to be taken.
     fn path_row(&mut self, ui: &mut Ui, wanted: &Wanted<'_>, verb: &str) -> bool {
         let mut entered = false;
+        // A page sees no files but those that are chosen, and the browser knows where downloads go.
+        let (is_page, opens) = (cfg!(target_arch = "wasm32"), wanted.save_as.is_none());
+        if is_page && opens {
+            if ui.add(primary(ui, "Choose files…")).clicked() {
+                self.dialog = Some(Dialog::open(wanted));
+            }
+            return false;
+        }
         ui.horizontal(|ui| {
             let label = ui.label("File");
-            let room = (ui.available_width() - 170.0).max(100.0);
-            let field = TextEdit::singleline(&mut self.path).hint_text("path of a file");
+            let room = (ui.available_width() - if is_page { 90.0 } else { 170.0 }).max(100.0);
+            let hint = if is_page { "name of a file" } else { "path of a file" };
+            let field = TextEdit::singleline(&mut self.path).hint_text(hint);
             let response = ui.add(field.desired_width(room)).labelled_by(label.id);
             if std::mem::take(&mut self.is_new) {
                 response.request_focus();
             }
             entered = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             let is_free = self.dialog.is_none();
-            if ui.add_enabled(is_free, egui::Button::new("Browse…")).clicked() {
+            if !is_page && ui.add_enabled(is_free, egui::Button::new("Browse…")).clicked() {
                 self.dialog = Some(Dialog::open(wanted));
             }
             let has_path = !self.path.trim().is_empty();
