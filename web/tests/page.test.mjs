@@ -287,7 +287,7 @@ test("every scene has the bits of the native program, in this browser too", asyn
       for (const step of Object.keys(hashes)) {
         simulation.step(Number(step) - taken);
         taken = Number(step);
-        found[name][step] = simulation.stateHash();
+        found[name][step] = simulation.state_hash();
       }
       simulation.free();
     }

@@ -6,10 +6,9 @@ use eframe::egui_wgpu::{RenderState, wgpu};
 use egui::{Color32, Painter, Pos2, Rect, Stroke, TextureId};
 use glam::Vec2;
 use sprung_driver::Report;
-use sprung_render::Image;
 use sprung_render::appearance::{Appearance, Theme};
 use sprung_render::camera::Camera;
-use sprung_render::gpu::{Marks, Moment, Quality, Stage, Timings};
+use sprung_render::gpu::{Marks, Moment, Quality, Reading, Stage, Timings};
 
 use super::drawn::Drawn;
 use super::pick::Seen;
@@ -149,13 +148,12 @@ impl Canvas {
         self.gpu.is_some()
     }
 
-    /// A picture of what is seen, in another size; `None` without a graphics card.
-    pub fn picture(&mut self, state: &AppState, marks: &Marks, size: [u32; 2]) -> Option<Image> {
+    /// A picture of what is seen, in another size, on its way back from the graphics card; `None` without one.
+    pub fn picture(&mut self, state: &AppState, marks: &Marks, size: [u32; 2]) -> Option<Reading> {
         let gpu = self.gpu.as_ref()?;
         let album = self.album.get_or_insert_with(|| Set::new(gpu));
         album.draw(&shown(state, marks, size));
-        let image = album.stage.read();
-        (image.width > 0).then_some(image)
+        album.stage.begin_to_read()
     }
 
     /// Gives back what pictures of other sizes took.

@@ -1,10 +1,12 @@
 //! Pictures and films of what is seen.
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
 
 use sprung::{Code, Error, Result};
+use sprung_render::Image;
 use sprung_render::export::{Progressed, Recording, Writing, write_png};
-use sprung_render::gpu::Marks;
+use sprung_render::gpu::{Marks, Reading};
 use web_time::{Duration, Instant};
 
 use super::canvas::Canvas;
@@ -68,10 +70,21 @@ impl Clock {
     }
 }
 
+/// What a picture that is on its way back from the graphics card is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum For {
+    /// To be saved by itself.
+    Itself,
+    /// So many pictures of the film.
+    Film(usize),
+}
+
 /// Makes pictures and films.
 #[derive(Default)]
 pub struct Saver {
     film: Film,
+    /// Pictures on their way back. Natively each is waited for; a page must go on meanwhile.
+    coming: VecDeque<(Reading, For)>,
     /// Real time of this frame, s.
     real: f64,
 }
@@ -80,26 +93,53 @@ impl Saver {
     /// Makes a picture and asks where to save it.
     pub fn picture(&mut self, canvas: &mut Canvas, state: &mut AppState, marks: &Marks, pixels: [u32; 2]) {
         let size = size_of(state.filming.size, pixels);
-        let picture = self.make(canvas, state, marks, size);
+        let reading = canvas.picture(state, marks, size);
         if !self.is_recording() {
             canvas.close_album();
         }
-        match picture {
-            Ok(bytes) => {
-                let name = format!("{}.png", file_stem(&state.report.opened.name));
-                state.save_requests.push(SaveRequest { name, bytes });
+        match reading {
+            Some(reading) => {
+                self.coming.push_back((reading, For::Itself));
+                self.take_what_came(state);
             }
-            Err(error) => state.refuse(error),
+            None => state.refuse(no_card()),
         }
     }
 
-    fn make(&self, canvas: &mut Canvas, state: &AppState, marks: &Marks, size: [u32; 2]) -> Result<Vec<u8>> {
-        let image = canvas.picture(state, marks, size).ok_or_else(no_card)?;
-        let mut bytes = Vec::new();
-        write_png(&mut bytes, &image).map_err(|error| {
-            Error::new(Code::Unwritable, format!("the picture cannot be encoded: {error}"))
-        })?;
-        Ok(bytes)
+    /// Takes the pictures that have come back, in order.
+    fn take_what_came(&mut self, state: &mut AppState) {
+        while let Some((reading, purpose)) = self.coming.pop_front() {
+            let image = if cfg!(target_arch = "wasm32") { reading.look() } else { Ok(reading.wait()) };
+            let taken = match image {
+                Err(reading) => return self.coming.push_front((reading, purpose)),
+                Ok(None) => Err(no_card()),
+                Ok(Some(image)) => self.take_picture(&image, purpose, state),
+            };
+            if let Err(error) = taken {
+                state.refuse(error);
+            }
+        }
+    }
+
+    fn take_picture(&mut self, image: &Image, purpose: For, state: &mut AppState) -> Result<()> {
+        match (purpose, &mut self.film) {
+            (For::Itself, _) => {
+                let name = format!("{}.png", file_stem(&state.report.opened.name));
+                state.save_requests.push(SaveRequest { name, bytes: encoded(image)? });
+                Ok(())
+            }
+            (For::Film(count), Film::Recording { recording, .. }) => {
+                (0..count).try_for_each(|_| recording.push(image))
+            }
+            // It came after the film's end.
+            (For::Film(_), _) => Ok(()),
+        }
+    }
+
+    /// Pictures of the film that are on their way.
+    fn pictures_coming(&self) -> usize {
+        let of_film = |purpose: &For| if let For::Film(count) = purpose { *count } else { 0 };
+        self.coming.iter().map(|(_, purpose)| of_film(purpose)).sum()
     }
 
     /// Begins a film, or ends it and asks where to save it.
@@ -146,15 +186,23 @@ impl Saver {
         // Half of the time between two pictures of the window, which writing is part of: as long as drawing takes.
         let piece = (0.5 * (real - self.real)).clamp(PIECE, LONGEST_PIECE);
         self.real = real;
+        self.take_what_came(state);
         match std::mem::take(&mut self.film) {
-            Film::None => return false,
-            Film::Recording { mut recording, mut clock } => {
-                let missing = clock.missing(recording.len(), self.time(clock.follows, state));
-                let taken = take(&mut recording, missing, canvas, state, marks);
+            Film::None => return !self.coming.is_empty(),
+            Film::Recording { recording, mut clock } => {
+                let taken = recording.len() + self.pictures_coming();
+                let missing = clock.missing(taken, self.time(clock.follows, state));
+                let size = recording.size();
                 self.film = Film::Recording { recording, clock };
-                if let Err(error) = taken {
+                if missing > 0 {
+                    // Where the window was slow, the same one again.
+                    let reading = canvas.picture(state, marks, size);
+                    self.coming.extend(reading.map(|reading| (reading, For::Film(missing))));
+                }
+                let troubles = state.refused.len();
+                self.take_what_came(state);
+                if state.refused.len() > troubles {
                     // What was recorded so far is kept.
-                    state.refuse(error);
                     self.toggle_film(canvas, state, [0, 0]);
                 }
             }
@@ -210,21 +258,6 @@ impl Saver {
     }
 }
 
-/// Takes the pictures that are missing; where the window was slow, the same one again.
-fn take(
-    recording: &mut Recording,
-    missing: usize,
-    canvas: &mut Canvas,
-    state: &AppState,
-    marks: &Marks,
-) -> Result<()> {
-    if missing == 0 {
-        return Ok(());
-    }
-    let image = canvas.picture(state, marks, recording.size()).ok_or_else(no_card)?;
-    (0..missing).try_for_each(|_| recording.push(&image))
-}
-
 fn pictures(count: usize) -> String {
     if count == 1 { "1 picture".to_owned() } else { format!("{count} pictures") }
 }
@@ -247,6 +280,13 @@ fn size_of(size: PictureSize, pixels: [u32; 2]) -> [u32; 2] {
         PictureSize::FullHd => [1920, 1080],
     };
     [width, height].map(|side| side.clamp(16, LARGEST))
+}
+
+fn encoded(image: &Image) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write_png(&mut bytes, image)
+        .map_err(|error| Error::new(Code::Unwritable, format!("the picture cannot be encoded: {error}")))?;
+    Ok(bytes)
 }
 
 fn no_card() -> Error {

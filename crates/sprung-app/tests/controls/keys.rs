@@ -39,6 +39,7 @@ fn every_key_does_something_and_never_panics() {
             let seen_elsewhere = [
                 Action::Picture,
                 Action::Record,
+                Action::Motion,
                 Action::Open,
                 Action::Save,
                 Action::Checkpoint,

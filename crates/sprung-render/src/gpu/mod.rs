@@ -34,6 +34,7 @@ use glam::Vec3;
 pub use device::{Headless, headless};
 pub use plan::{Shown, joints_shown, shown};
 pub use quality::Quality;
+pub use read::Reading;
 pub use stage::{Stage, Timings};
 
 /// A moment to draw: where the points are, between two steps.

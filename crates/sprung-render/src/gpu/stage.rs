@@ -15,7 +15,7 @@ use super::plan::{Basis, Plan};
 use super::quality::Quality;
 use super::scenery::{Scenery, Sizes};
 use super::target::{self, Target};
-use super::{Marks, Moment, read};
+use super::{Marks, Moment, Reading};
 use crate::appearance::Appearance;
 use crate::camera::{Bounds, Camera};
 use crate::ground::nice_step;
@@ -194,9 +194,14 @@ impl Stage {
     /// The picture that was drawn last, copied back from the card; empty if none was drawn, or if the card is gone.
     /// It waits for the card, which a browser does not allow: natively only.
     pub fn read(&mut self) -> Image {
-        let read = |target: &Target| read::read(&self.device, &self.queue, target);
         let nothing = Image { width: 0, height: 0, rgb: Vec::new() };
-        self.target.as_ref().and_then(read).unwrap_or(nothing)
+        self.begin_to_read().and_then(Reading::wait).unwrap_or(nothing)
+    }
+
+    /// Begins to copy the picture that was drawn last back from the card; `None` if none was drawn.
+    pub fn begin_to_read(&mut self) -> Option<Reading> {
+        let target = self.target.as_ref()?;
+        Some(Reading::begin(&self.device, &self.queue, target))
     }
 
     /// How long the last drawing took on this side of the card.
