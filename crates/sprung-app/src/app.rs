@@ -23,7 +23,7 @@ const PANEL_WIDTH: f32 = 360.0;
 const LEAST_PANEL_WIDTH: f32 = 336.0;
 
 /// A window that is narrower has no room for the panel beside the scene, points: a phone that is held upright.
-const NARROW: f32 = 480.0;
+const NARROW: f32 = 440.0;
 
 /// The window.
 pub struct App {

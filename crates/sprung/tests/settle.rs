@@ -80,7 +80,9 @@ fn in_portions_it_settles_to_the_same_bits() {
         assert_eq!(portions, told.steps.div_ceil(portion as u64));
         assert_eq!((settled.state(), settled.log()), (at_once.state(), at_once.log()));
         let mut at_once = at_once.clone();
-        [&mut settled, &mut at_once].map(|simulation| simulation.steps(50).expect("it is stable"));
+        for simulation in [&mut settled, &mut at_once] {
+            simulation.steps(50).expect("it is stable");
+        }
         assert_eq!(settled.state(), at_once.state());
     }
     let never = SettleOptions { residual_force: Some(0.0), max_steps: 10 };
