@@ -51,7 +51,7 @@ impl Simulation {
     /// the last value, from what was before the first.
     ///
     /// # Errors
-    /// [`Code::OutOfRange`], and then nothing has changed.
+    /// [`Code::OutOfRange`](crate::Code::OutOfRange), and then nothing has changed.
     pub fn change(&mut self, change: Change) -> Result<()> {
         self.change_unlogged(&change)?;
         self.history.branch_at(self.current.step());
