@@ -36,7 +36,7 @@ async function fetched(url, length) {
 
 async function start() {
   if (!("WebAssembly" in globalThis)) {
-    return fail("This browser has no WebAssembly: sprung needs Chrome or Edge 91, Firefox 89, Safari 16.4, or newer.");
+    return fail("This browser has no WebAssembly: sprung needs Chrome or Edge 96, Firefox 114, Safari 16.4, or newer.");
   }
   const sizes = await (await fetch("sizes.json")).json();
   const { default: init } = await import("./sprung-app.js");

@@ -197,7 +197,7 @@ test("files come in by drop: good ones, bad ones, and a scene with its mesh", as
   await context.close();
 });
 
-test("files go out as downloads: scene, picture, motion, checkpoint, which comes back", async () => {
+test("files go out as downloads: scene, picture, motion, film, checkpoint, which comes back", async () => {
   const { context, page, wrong } = await opened("WebGL2", { fragment: "#scene=chain" });
   await titled(page, "chain – sprung");
   await page.waitForTimeout(1500);
@@ -221,6 +221,12 @@ test("files go out as downloads: scene, picture, motion, checkpoint, which comes
   assert.deepEqual([picture.name, picture.bytes.subarray(1, 4).toString()], ["chain.png", "PNG"]);
   const motion = await saved("Control+e", "Save the motion");
   assert.deepEqual([motion.name, motion.bytes.subarray(0, 8).toString()], ["chain.usdc", "PXR-USDC"]);
+  // A film of a second or more, as the simulation goes on.
+  await press(page, "Control+r", "Space");
+  await page.waitForTimeout(3000);
+  await press(page, "Space");
+  const film = await saved("Control+r", "Save the film");
+  assert.deepEqual([film.name, film.bytes.subarray(0, 6).toString()], ["chain.gif", "GIF89a"]);
   await page.evaluate((bytes) => {
     const transfer = new DataTransfer();
     transfer.items.add(new File([new Uint8Array(bytes)], "kept.sprung"));

@@ -55,7 +55,7 @@ const STAGES: &[Stage] = &[
         about: "the npm package in target/npm/sprung: its tests in Node.js, with the same bits",
         run: npm::npm,
     },
-    Stage { name: "web", about: "the page in web/dist: its tests in a browser", run: web::web },
+    Stage { name: "web", about: "the page, built into web/dist: its tests in a browser", run: web::web },
     Stage { name: "schema", about: "docs/scene.schema.json is what the command prints", run: stages::schema },
     Stage { name: "demo", about: "the demonstration, and every scene to every format", run: stages::demo },
     Stage {
@@ -168,7 +168,8 @@ fn help() -> String {
     let mut text =
         "What continuous integration runs.\n\n  cargo xtask ci       all stages below, in this order\n"
             .to_owned();
-    text += "  cargo xtask STAGE    one of them\n  cargo xtask web --serve  the page, on this machine\n\nStages:\n";
+    text += "  cargo xtask STAGE    one of them\n";
+    text += "  cargo xtask web --serve\n                       builds the page and serves it on this machine\n\nStages:\n";
     for stage in STAGES {
         text += &format!("  {:<15} {}\n", stage.name, stage.about);
     }

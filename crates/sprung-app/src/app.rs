@@ -25,6 +25,10 @@ const LEAST_PANEL_WIDTH: f32 = 336.0;
 /// A window that is narrower has no room for the panel beside the scene, points: a phone that is held upright.
 const NARROW: f32 = 440.0;
 
+/// A changed scene of more springs is not kept for the next start on a page: to write it down, it has to be built.
+#[cfg(target_arch = "wasm32")]
+const MOST_KEPT: usize = 100_000;
+
 /// The window.
 pub struct App {
     state: AppState,
@@ -209,8 +213,10 @@ impl App {
         let state = &mut self.state;
         let params = state.report.params.clone();
         if self.linked.as_ref().is_none_or(|linked| !std::sync::Arc::ptr_eq(linked, &params)) {
-            // What no link can hold is not kept.
-            state.kept_link = link::link(&state.report, &state.camera).ok();
+            let opened = &state.report.opened;
+            let is_quick = params == opened.params || opened.model.spring_count() <= MOST_KEPT;
+            // What no link can hold is not kept, nor what would hold up the page.
+            state.kept_link = is_quick.then(|| link::link(&state.report, &state.camera).ok()).flatten();
             self.linked = Some(params);
         }
     }

@@ -54,22 +54,23 @@ pub struct Link {
 /// # Errors
 /// [`Code::Unsupported`] for what a link cannot hold, such as a mesh; [`Code::TooLarge`] if it would be too long.
 pub fn link(report: &Report, view: &Turntable) -> Result<String> {
-    let text = scene_text(report)?;
-    let name = &report.opened.name;
-    let is_builtin = Scene::builtin(name).is_ok_and(|builtin| builtin.to_toml() == text);
+    let (opened, name) = (&report.opened, &report.opened.name);
+    // As it comes: nothing has to be built to know that.
+    let is_untouched =
+        *report.params == *opened.params && Origin::of(name, &opened.scene) == Origin::Builtin(name.clone());
     let mut link = format!("v={VERSION}");
     // Writing to a String cannot fail.
-    let _ = if is_builtin {
+    let _ = if is_untouched {
         write!(link, "&scene={name}")
     } else {
-        if let Some(mesh) = mesh_of(&report.opened.scene) {
+        if let Some(mesh) = mesh_of(&opened.scene) {
             let sentence =
                 format!("cannot be a link: the scene has the mesh {mesh}, and a link holds no files");
             return Err(
                 Error::new(Code::Unsupported, sentence).with_fix("send the scene's file and its meshes")
             );
         }
-        let packed = BASE64.encode(compress_to_vec(text.as_bytes(), EFFORT));
+        let packed = BASE64.encode(compress_to_vec(scene_text(report)?.as_bytes(), EFFORT));
         write!(link, "&name={}&toml={packed}", plain(name))
     };
     let Turntable { target: Vec3 { x, y, z }, distance, azimuth, elevation } = *view;

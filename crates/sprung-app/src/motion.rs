@@ -68,6 +68,10 @@ impl Motion {
     /// # Errors
     /// What the format refuses, and a file that cannot be written.
     pub fn begin(state: &mut AppState, path: &Path, manner: Manner) -> Result<()> {
+        if state.motion.0.is_some() {
+            let error = Error::new(Code::Conflict, "cannot be begun: another motion is still being written");
+            return Err(error.with_fix("wait until that is done").in_file(path.display().to_string()));
+        }
         let report = &state.report;
         let exporter = exporter_for(path)?;
         if formats().all(|format| format.ending != exporter.ending) {
@@ -132,19 +136,22 @@ impl Writing {
         let begin = Instant::now();
         while let Some(&step) = self.steps.get(self.done) {
             let report = state.driver.report();
-            if report.opened.serial != self.serial || report.playing {
+            // Before the first frame it may not have heard yet that it is to pause.
+            let goes_on = report.playing && self.done > 0;
+            if report.opened.serial != self.serial || goes_on {
                 let sentence =
                     "was not saved: the run went on, or another scene was opened, while it was being written";
                 let error = Error::new(Code::Interrupted, sentence)
                     .with_fix("save it once more, and wait until it is done");
                 return Err(error.in_file(self.path.display().to_string()));
             }
-            if report.now.step != step {
+            if report.now.step != step || report.playing {
                 // The driver takes the newest of several places that it is asked to go to; so one at a time.
                 if report.busy.is_none() {
                     state.send(Command::Seek(step));
                 }
-                if state.driver.report().now.step != step {
+                let now = state.driver.report();
+                if now.now.step != step || now.playing {
                     return Ok(true);
                 }
                 continue;

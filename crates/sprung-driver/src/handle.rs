@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use web_time::{Duration, Instant};
-
 use crate::command::{Beginning, Command};
 use crate::driver::Driver;
 use crate::options::Options;
@@ -13,9 +11,6 @@ use crate::report::Report;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::thread::Thread;
 
-/// The longest that a page's driver works before the page is drawn again.
-const PAGE_BUDGET: Duration = Duration::from_millis(12);
-
 /// A driver as the front end sees it. Dropping it ends the driver's work.
 pub struct Handle(Place);
 
@@ -23,19 +18,10 @@ pub struct Handle(Place);
 enum Place {
     /// Here, as long as it takes.
     Inline(Box<Driver>),
-    /// Here, a few milliseconds at a time.
-    Page(Box<Page>),
     #[cfg(not(target_arch = "wasm32"))]
     Thread(Thread),
     /// Where no memory is shared with it, such as in a page's worker.
     Remote(Box<Remote>),
-}
-
-/// A driver on a page.
-struct Page {
-    driver: Driver,
-    /// The scene that played when time passed last.
-    played: Option<u64>,
 }
 
 impl Handle {
@@ -43,12 +29,6 @@ impl Handle {
     /// clock: the same calls give the same reports. For tests.
     pub fn inline(driver: Driver) -> Self {
         Self(Place::Inline(Box::new(driver)))
-    }
-
-    /// A driver that works when it is told that time has passed, for some milliseconds at the most: for pages, which have no
-    /// other thread to work on.
-    pub fn page(driver: Driver) -> Self {
-        Self(Place::Page(Box::new(Page { driver, played: None })))
     }
 
     /// A driver on a thread of its own. `wake` is called there when there is a new report.
@@ -82,19 +62,16 @@ impl Handle {
                 driver.obey(command);
                 driver.advance(0.0, &mut || true);
             }
-            Place::Page(page) => page.driver.obey(command),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(thread) => thread.send(command),
             Place::Remote(remote) => remote.send(&command),
         }
     }
 
-    /// Real time has passed, s. Inline and on a page, this is when the work is done; elsewhere the driver has its own clock. As there, what
-    /// went by on a page before something began to play is not owed to it.
+    /// Real time has passed, s. Inline, this is when the work is done; elsewhere the driver has its own clock.
     pub fn pass(&mut self, seconds: f64) {
         match &mut self.0 {
             Place::Inline(driver) => driver.advance(seconds, &mut || true),
-            Place::Page(page) => page.pass(seconds),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(_) => {}
             Place::Remote(_) => {}
@@ -105,20 +82,9 @@ impl Handle {
     pub fn report(&mut self) -> Arc<Report> {
         match &mut self.0 {
             Place::Inline(driver) => driver.report(),
-            Place::Page(page) => page.driver.report(),
             #[cfg(not(target_arch = "wasm32"))]
             Place::Thread(thread) => thread.report(),
             Place::Remote(remote) => remote.report(),
         }
-    }
-}
-
-impl Page {
-    fn pass(&mut self, seconds: f64) {
-        let seconds = if self.driver.plays() == self.played { seconds } else { 0.0 };
-        let begin = Instant::now();
-        self.driver.advance(seconds, &mut || begin.elapsed() < PAGE_BUDGET);
-        self.driver.measured(begin.elapsed().as_secs_f64());
-        self.played = self.driver.plays();
     }
 }

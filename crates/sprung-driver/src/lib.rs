@@ -1,8 +1,8 @@
 //! The driver: it owns a simulation for a front end, takes [`Command`]s and gives [`Report`]s.
 //!
 //! A front end never touches the simulation. It sends commands through a [`Handle`] and reads the newest report. Behind the
-//! handle the [`Driver`] works inline (in tests and pages without a worker), on a thread of its own, or in a page's worker,
-//! which is reached by bytes alone: there a [`Host`] has it.
+//! handle the [`Driver`] works inline (in tests), on a thread of its own, or in a page's worker, which is reached by bytes alone:
+//! there a [`Host`] has it.
 //!
 //! ```
 //! use sprung::scene::Scene;

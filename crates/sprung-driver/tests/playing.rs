@@ -4,7 +4,7 @@ mod common;
 
 use common::{check, frames, open};
 use sprung::Change;
-use sprung_driver::{Command, Driver, Handle, Pace, Report};
+use sprung_driver::{Command, Driver, Pace};
 
 #[test]
 fn sixty_frames_make_a_second_whatever_the_pace() {
@@ -123,46 +123,6 @@ fn time_that_is_no_time_is_no_time() {
     handle.pass(0.1);
     check(&handle.report());
     assert!(handle.report().now.step <= 10);
-}
-
-/// A page has no other thread: a command is only noted, and work is done a few milliseconds at a time.
-#[test]
-fn on_a_page_work_is_done_when_time_passes_and_in_portions() {
-    let mut handle = Handle::page(Driver::new(common::source("chain")).expect("it opens"));
-    let pass_until = |handle: &mut Handle, what: &str, holds: &dyn Fn(&Report) -> bool| {
-        for _ in 0..10_000 {
-            let report = handle.report();
-            check(&report);
-            if holds(&report) {
-                return report;
-            }
-            handle.pass(1.0 / 60.0);
-        }
-        panic!("it never comes to {what}");
-    };
-    handle.send(Command::Step);
-    assert_eq!(handle.report().now.step, 0);
-    pass_until(&mut handle, "the step", &|report| report.now.step == 1 && report.busy.is_none());
-
-    // A page that rests is not drawn: the first time that passes then is that of the rest.
-    handle.send(Command::Play(true));
-    handle.pass(5.0);
-    let report = handle.report();
-    assert_eq!((report.now.step, report.playing, report.speed), (1, true, 1.0));
-    pass_until(&mut handle, "the next steps", &|report| report.now.step > 1);
-
-    // More steps than any machine takes in a portion.
-    handle.send(common::edit("sub-steps", Change::Substeps(1_000_000)));
-    handle.send(Command::Frame);
-    handle.pass(1.0 / 60.0);
-    let report = handle.report();
-    assert!(report.busy.as_deref().is_some_and(|busy| busy.starts_with("stepping")), "{:?}", report.busy);
-    handle.send(Command::Play(true));
-    let report =
-        pass_until(&mut handle, "playing", &|report| report.playing && report.seconds_per_step > 0.0);
-    handle.send(Command::Seek(report.now.step / 2));
-    let half = report.now.step / 2;
-    pass_until(&mut handle, "the middle", &|report| report.now.step == half && report.busy.is_none());
 }
 
 /// After hours of sleep nobody waits for what was missed.
