@@ -26,7 +26,7 @@ pub fn clippy() -> Outcome {
         println!("not looked at as a page's: for that, `rustup target add {}`", wasm::TARGET);
         return Ok(());
     }
-    let packages = ["-p", "sprung-wasm", "-p", "sprung-app"];
+    let packages = ["-p", "sprung-wasm", "-p", "sprung-app", "--features", "sprung-wasm/worker"];
     let page = ["clippy", "--locked", "--target", wasm::TARGET];
     run(cargo(&page).args(packages).args(["--", "-D", "warnings"]))
 }

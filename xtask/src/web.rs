@@ -14,8 +14,12 @@ const APP: Build<'_> =
     Build { package: "sprung-app", what: &["--bin", "sprung-app"], file: "sprung-app", profile: "page" };
 
 /// What the worker steps with.
-const ENGINE: Build<'_> =
-    Build { package: "sprung-wasm", what: &["--lib"], file: "sprung_wasm", profile: "wasm" };
+const ENGINE: Build<'_> = Build {
+    package: "sprung-wasm",
+    what: &["--lib", "--features", "worker"],
+    file: "sprung_wasm",
+    profile: "wasm",
+};
 
 /// Most bytes to the first motion, compressed as servers do it.
 const MOST_BYTES: u64 = 4_000_000;
@@ -154,7 +158,7 @@ fn licences() -> Outcome<String> {
     Ok(format!("{head}{}\n", lines.join("\n")))
 }
 
-/// The tests in a browser.
+/// The tests in a browser, after that of the worker under Node.js, beside a driver here.
 fn check(page: &Path) -> Outcome {
     let folder = root().join("web/tests");
     let modules = target().join("web-tests");
@@ -168,6 +172,13 @@ fn check(page: &Path) -> Outcome {
         fs::copy(&path, modules.join(name))
             .map_err(|error| format!("{} cannot be copied: {error}", path.display()))?;
     }
+    // Beside a package.json that says what modules are, as Node.js wants it.
+    for name in ["engine.js", "engine_bg.wasm"] {
+        fs::copy(page.join(name), modules.join(name))
+            .map_err(|error| format!("{name} cannot be copied: {error}"))?;
+    }
+    run(cargo(&["test", "--locked", "--package", "sprung-wasm", "--test", "page"])
+        .env("SPRUNG_ENGINE", &modules))?;
     run(program("npm", &["ci", "--no-audit", "--no-fund", "--ignore-scripts"]).current_dir(&modules))?;
     run(program("node", &["--test", "--test-reporter=spec", "page.test.mjs"])
         .current_dir(&modules)
