@@ -271,7 +271,7 @@ test("the last scene comes back, with what was changed in it", async () => {
   const { context, page, wrong } = await opened("WebGL2", { fragment: "#scene=bridge" });
   await titled(page, "bridge – sprung");
   // What is kept is kept when one goes.
-  await page.goto(`${address}icon.svg`);
+  await page.goto("about:blank");
   await page.goto(address);
   await page.waitForSelector("#loading", { state: "hidden", timeout: 120_000 });
   await titled(page, "bridge – sprung");

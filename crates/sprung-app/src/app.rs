@@ -283,7 +283,10 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let seconds = ui.input(|input| input.unstable_dt.min(0.25));
         self.state.driver.pass(f64::from(seconds));
-        self.state.report = self.state.driver.report();
+        // While a motion is written, the run is gone through behind a picture that stands: to draw it would take longer.
+        if !self.state.motion.is_being_written() {
+            self.state.report = self.state.driver.report();
+        }
         self.follow();
         self.zoom = ui.ctx().zoom_factor();
         self.state.pixels_per_point = ui.ctx().pixels_per_point();

@@ -68,7 +68,7 @@ impl Motion {
     /// # Errors
     /// What the format refuses, and a file that cannot be written.
     pub fn begin(state: &mut AppState, path: &Path, manner: Manner) -> Result<()> {
-        if state.motion.0.is_some() {
+        if state.motion.is_being_written() {
             let error = Error::new(Code::Conflict, "cannot be begun: another motion is still being written");
             return Err(error.with_fix("wait until that is done").in_file(path.display().to_string()));
         }
@@ -116,6 +116,11 @@ impl Motion {
             Err(error) => state.refuse(error),
         }
         state.motion.0.is_some()
+    }
+
+    /// Whether one is.
+    pub fn is_being_written(&self) -> bool {
+        self.0.is_some()
     }
 
     /// Ends whatever goes on, and leaves no half-written file.

@@ -231,7 +231,8 @@ impl Encoder {
 
     /// Waits for the end; if it is not a good one, gives the last line ffmpeg said.
     fn finish(&mut self) -> Result<(), String> {
-        drop(self.child.stdin.take());
+        // The pipe is closed: no more pictures will come.
+        self.child.stdin = None;
         let status = self.child.wait();
         let said = self.complaints.take().and_then(|thread| thread.join().ok()).unwrap_or_default();
         match status {
