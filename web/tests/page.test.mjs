@@ -238,6 +238,20 @@ test("files go out as downloads: scene, picture, motion, film, checkpoint, which
   await context.close();
 });
 
+test("what the keyboard is at is said to those who do not see it", async () => {
+  const { context, page, wrong } = await opened();
+  await titled(page, "jelly – sprung");
+  const heard = new Set();
+  for (let tabs = 0; tabs < 12 && heard.size < 3; tabs += 1) {
+    await press(page, "Tab");
+    await page.waitForTimeout(1000);
+    heard.add(await page.textContent("#words"));
+  }
+  assert.ok([...heard].some((words) => /Pause|Step|Frame|Reset/.test(words)), [...heard].join("; "));
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
 test("a link is a scene, there and back", async () => {
   const { context, page, wrong } = await opened("WebGL2", { fragment: "#scene=chain&view=0,-2,0,14,0.3,0.2" });
   await titled(page, "chain – sprung");
