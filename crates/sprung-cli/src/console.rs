@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
-use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -41,11 +40,11 @@ pub fn complain(error: &Error) {
     note(format_args!("sprung: {error}"));
 }
 
-/// Help and version as clap has them; a mistake in the arguments as its first paragraph.
-pub fn usage(error: &clap::Error) -> ExitCode {
+/// Help and version as clap has them; a mistake in the arguments as its first paragraph. Gives the exit status.
+pub fn usage(error: &clap::Error) -> u8 {
     if !error.use_stderr() {
         let _ = error.print();
-        return ExitCode::SUCCESS;
+        return 0;
     }
     let text = error.to_string();
     let mut paragraphs = text.split("\n\n");
@@ -54,7 +53,7 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     let first = first.split_whitespace().collect::<Vec<_>>().join(" ");
     note(format_args!("sprung: {first}{}", tip.map(|tip| format!("; {tip}")).unwrap_or_default()));
     note("Try `sprung --help`.");
-    ExitCode::from(2)
+    2
 }
 
 /// A progress bar with the time left; silent when `quiet` or when standard error is no terminal.

@@ -4,18 +4,17 @@ mod args;
 mod commands;
 mod console;
 mod interrupt;
-mod memory;
+pub mod memory;
 mod source;
 
-use std::ffi::OsString;
-use std::process::ExitCode;
-
 use clap::FromArgMatches;
+use std::ffi::OsString;
 
 pub use args::Cli;
+pub use source::{processors, workers};
 
 /// Runs the command with the given arguments, the program's name first, and gives its exit status.
-pub fn main_with<A: Into<OsString> + Clone>(args: impl IntoIterator<Item = A>) -> ExitCode {
+pub fn main_with<A: Into<OsString> + Clone>(args: impl IntoIterator<Item = A>) -> u8 {
     let parsed =
         Cli::definition().try_get_matches_from(args).and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
@@ -23,10 +22,10 @@ pub fn main_with<A: Into<OsString> + Clone>(args: impl IntoIterator<Item = A>) -
         Err(error) => return console::usage(&error),
     };
     match commands::run(cli).and_then(|()| console::lost().map_or(Ok(()), Err)) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
             console::complain(&error);
-            ExitCode::from(error.exit_status())
+            error.exit_status()
         }
     }
 }

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    sprung_cli::main_with(std::env::args_os())
+    sprung_cli::main_with(std::env::args_os()).into()
 }

@@ -197,7 +197,8 @@ impl Saved {
     /// # Errors
     /// [`Code::Conflict`] if the scene was built into another model, or the parts do not fit it, and as
     /// [`Simulation::resume_from`].
-    pub fn simulation(&self, model: Model) -> Result<Simulation> {
+    pub fn simulation(&self, model: impl Into<Arc<Model>>) -> Result<Simulation> {
+        let model = model.into();
         if model.fingerprint() != self.fingerprint {
             let sentence = "the scene in it is not the one that its points and springs are of";
             return Err(Error::new(Code::Conflict, sentence));

@@ -1,0 +1,275 @@
+//! The parameters: read as arrays that never change, set as a whole.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use sprung::{Change, Code, ContactLaw, DVec3, Error, Grab, Params, Plane, Vec3};
+use sprung_driver::soft_spring;
+
+use crate::errors::raised;
+use crate::simulation::{Inner, Simulation};
+use crate::{numbers, tell, views};
+
+#[pymethods]
+impl Simulation {
+    /// Length of a step, s; set `None` for the largest that is safely stable.
+    #[getter]
+    fn dt(&self, py: Python<'_>) -> f64 {
+        self.lock(py).simulation.params().dt
+    }
+
+    /// A number, or none for the largest that is safely stable.
+    #[setter]
+    fn set_dt(&self, py: Python<'_>, dt: Option<f64>) -> PyResult<()> {
+        self.change_with(py, |inner| {
+            dt.map_or_else(|| tell::auto_dt(&inner.simulation), Ok).map(Change::Dt).map_err(raised)
+        })
+    }
+
+    /// Steps in a displayed frame.
+    #[getter]
+    fn substeps(&self, py: Python<'_>) -> u32 {
+        self.lock(py).simulation.params().substeps
+    }
+
+    #[setter]
+    fn set_substeps(&self, py: Python<'_>, substeps: i64) -> PyResult<()> {
+        // What does not fit is out of range in any case.
+        let substeps = u32::try_from(substeps).unwrap_or(if substeps < 0 { 0 } else { u32::MAX });
+        self.change(py, Change::Substeps(substeps))
+    }
+
+    /// Gravitational acceleration, (3,), m/s².
+    #[getter]
+    fn gravity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        let gravity = PyArray1::from_slice(py, &self.lock(py).simulation.params().gravity.to_array());
+        gravity.readwrite().make_nonwriteable();
+        gravity
+    }
+
+    #[setter]
+    fn set_gravity(&self, py: Python<'_>, gravity: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.change(py, Change::Gravity(numbers::vec3("gravity", gravity)?))
+    }
+
+    #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
+    fn tell_planes(&self, py: Python<'_>) -> Vec<(tell::Vector, tell::Vector, f32, f32, &'static str)> {
+        self.lock(py).simulation.params().planes.iter().map(tell::plane).collect()
+    }
+
+    fn set_planes(&self, py: Python<'_>, planes: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
+        self.change(py, Change::Planes(planes_from(&planes)?))
+    }
+
+    /// Mass of each point, (n,), kg; zero fixes it in space. Set one number, or one for each.
+    #[getter]
+    fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        views::floats(py, &self.lock(py).simulation.params().point_mass).map(Bound::into_any)
+    }
+
+    #[setter]
+    fn set_mass(&self, py: Python<'_>, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mass = numbers::for_each("mass", given, self.points)?;
+        self.set(py, |params| params.point_mass = Arc::new(mass))
+    }
+
+    /// Whether each point is pinned, (n,): it then stays where it is. Set one for all, or one for each.
+    #[getter]
+    fn pinned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        views::flags(py, &self.lock(py).simulation.params().point_pinned).map(Bound::into_any)
+    }
+
+    #[setter]
+    fn set_pinned(&self, py: Python<'_>, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let pinned = numbers::flags("pinned", given, self.points)?;
+        self.set(py, |params| params.point_pinned = Arc::new(pinned))
+    }
+
+    /// Stiffness of each spring, (m,), N/m. Set one number, or one for each.
+    #[getter]
+    fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        views::floats(py, &self.lock(py).simulation.params().spring_stiffness).map(Bound::into_any)
+    }
+
+    #[setter]
+    fn set_stiffness(&self, py: Python<'_>, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let stiffness = numbers::for_each("stiffness", given, self.springs)?;
+        self.set(py, |params| params.spring_stiffness = Arc::new(stiffness))
+    }
+
+    /// Damping along each spring, (m,), N·s/m. Set one number, or one for each.
+    #[getter]
+    fn damping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        views::floats(py, &self.lock(py).simulation.params().spring_damping).map(Bound::into_any)
+    }
+
+    #[setter]
+    fn set_damping(&self, py: Python<'_>, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let damping = numbers::for_each("damping", given, self.springs)?;
+        self.set(py, |params| params.spring_damping = Arc::new(damping))
+    }
+
+    /// Rest length of each spring, (m,), m. Set one number, or one for each.
+    #[getter]
+    fn rest_lengths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        views::floats(py, &self.lock(py).simulation.params().spring_rest_length).map(Bound::into_any)
+    }
+
+    #[setter]
+    fn set_rest_lengths(&self, py: Python<'_>, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let lengths = numbers::for_each("rest_lengths", given, self.springs)?;
+        self.set(py, |params| params.spring_rest_length = Arc::new(lengths))
+    }
+
+    /// Whether each spring is cut, (m,): it then exerts no force. Set one for all, or one for each.
+    #[getter]
+    fn cut<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        views::flags(py, &self.lock(py).simulation.params().spring_cut).map(Bound::into_any)
+    }
+
+    #[setter]
+    fn set_cut(&self, py: Python<'_>, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let cut = numbers::flags("cut", given, self.springs)?;
+        self.set(py, |params| params.spring_cut = Arc::new(cut))
+    }
+
+    /// A constant force on each point, (n, 3), N, until others are set; `None` takes them away.
+    #[getter]
+    fn external_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let inner = self.lock(py);
+        let mut forces = vec![[0.0; 3]; self.points];
+        for (&point, &force) in &inner.simulation.params().external_forces {
+            forces[point] = force.to_array();
+        }
+        let flat: Vec<f32> = forces.into_flattened();
+        let array = PyArray1::from_vec(py, flat).reshape([self.points, 3])?;
+        array.readwrite().make_nonwriteable();
+        Ok(array)
+    }
+
+    #[setter]
+    fn set_external_forces(&self, py: Python<'_>, given: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let forces = match given {
+            Some(given) => numbers::vectors("external_forces", given, Some(self.points))?,
+            None => Vec::new(),
+        };
+        let acting: BTreeMap<usize, Vec3> =
+            forces.into_iter().enumerate().filter(|(_, force)| *force != Vec3::ZERO).collect();
+        self.set(py, |params| params.external_forces = acting)
+    }
+
+    /// Puts a point there, m, at rest.
+    fn place(&self, py: Python<'_>, point: usize, position: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.change(py, Change::Place(point, numbers::vec3("place", position)?))
+    }
+
+    /// Carries a point along at this velocity, m/s.
+    fn carry(&self, py: Python<'_>, point: usize, velocity: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.change(py, Change::Carry(point, Some(numbers::vec3("carry", velocity)?)))
+    }
+
+    /// Pulls a point there, m, by a spring of this stiffness (N/m) and damping (N·s/m), or by one that suits it.
+    #[pyo3(signature = (point, target, stiffness=None, damping=None))]
+    fn drag(
+        &self,
+        py: Python<'_>,
+        point: usize,
+        target: &Bound<'_, PyAny>,
+        stiffness: Option<f32>,
+        damping: Option<f32>,
+    ) -> PyResult<()> {
+        let target = numbers::vec3("drag", target)?;
+        self.change_with(py, |inner| inner.grab(point, target, stiffness, damping).map(Change::Grab))
+    }
+
+    /// Lets a point go that was dragged or carried.
+    fn release(&self, py: Python<'_>, point: usize) -> PyResult<()> {
+        if self.lock(py).simulation.params().carried.contains_key(&point) {
+            self.change(py, Change::Carry(point, None))?;
+        }
+        self.change(py, Change::Release(point))
+    }
+}
+
+impl Simulation {
+    fn change(&self, py: Python<'_>, change: Change) -> PyResult<()> {
+        self.change_with(py, |_| Ok(change))
+    }
+
+    fn change_with(&self, py: Python<'_>, change: impl FnOnce(&Inner) -> PyResult<Change>) -> PyResult<()> {
+        let mut guard = self.lock(py);
+        let inner = &mut *guard;
+        let change = change(inner)?;
+        py.detach(|| inner.simulation.change(change)).map_err(raised)
+    }
+
+    /// Sets whole arrays, or none if they are not allowed.
+    fn set(&self, py: Python<'_>, set: impl FnOnce(&mut Params)) -> PyResult<()> {
+        self.change_with(py, |inner| {
+            let mut params = inner.simulation.params().clone();
+            set(&mut params);
+            Ok(Change::Params(Arc::new(params)))
+        })
+    }
+}
+
+impl Inner {
+    fn grab(
+        &self,
+        point: usize,
+        target: Vec3,
+        stiffness: Option<f32>,
+        damping: Option<f32>,
+    ) -> PyResult<Grab> {
+        let (model, params) = (self.simulation.model(), self.simulation.params());
+        if point >= model.point_count() {
+            let sentence = format!("there is no point {point}; points are 0 to {}", model.point_count() - 1);
+            return Err(raised(Error::new(Code::NotFound, sentence).at_field("drag")));
+        }
+        if params.is_anchored(point) {
+            let sentence = format!("{} is fixed, and a pull does not move it", model.point_name(point));
+            return Err(raised(Error::new(Code::Conflict, sentence).at_field("drag").with_fix("unpin it")));
+        }
+        let (soft_stiffness, soft_damping) = match params.grabs.iter().find(|grab| grab.point == point) {
+            Some(grab) => (grab.stiffness, grab.damping),
+            None => soft_spring(model, params, &self.simulation.state().position, point),
+        };
+        let (stiffness, damping) = (stiffness.unwrap_or(soft_stiffness), damping.unwrap_or(soft_damping));
+        Ok(Grab { point, target, stiffness, damping })
+    }
+}
+
+/// Planes from objects with `point`, `normal`, `stiffness`, `damping` and `law`. A normal may have any length but zero.
+pub fn planes_from(planes: &[Bound<'_, PyAny>]) -> PyResult<Vec<Plane>> {
+    planes.iter().enumerate().map(|(index, plane)| plane_from(index, plane)).collect()
+}
+
+fn plane_from(index: usize, plane: &Bound<'_, PyAny>) -> PyResult<Plane> {
+    let field = |name: &str| format!("planes[{index}].{name}");
+    let point = numbers::vec3(&field("point"), &plane.getattr("point")?)?;
+    let normal = DVec3::from_array(numbers::vector(&field("normal"), &plane.getattr("normal")?)?);
+    // Brought to a sensible length first, so that squaring it neither overflows nor vanishes.
+    let largest = normal.abs().max_element();
+    if !(normal.is_finite() && largest > 0.0) {
+        let sentence = format!("is {normal}, and must be finite and not zero");
+        return Err(raised(Error::new(Code::OutOfRange, sentence).at_field(field("normal"))));
+    }
+    let law: String = plane.getattr("law")?.extract()?;
+    let law = match law.as_str() {
+        "push" => ContactLaw::Push,
+        "report" => ContactLaw::Report,
+        _ => {
+            let sentence = format!("is \"{law}\", and must be \"push\" or \"report\"");
+            return Err(raised(Error::new(Code::OutOfRange, sentence).at_field(field("law"))));
+        }
+    };
+    Ok(Plane {
+        point,
+        normal: (normal / largest).normalize().as_vec3(),
+        stiffness: plane.getattr("stiffness")?.extract()?,
+        damping: plane.getattr("damping")?.extract()?,
+        law,
+    })
+}

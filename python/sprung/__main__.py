@@ -1,0 +1,19 @@
+"""``python -m sprung``: the command, without its window."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+from . import _engine
+
+
+def main() -> int:
+    """Runs the command with the arguments of this process; gives its exit status."""
+    # The command ends by itself when Ctrl-C comes, with what it has.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _engine.main(["sprung", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
