@@ -117,7 +117,7 @@ class Scene(_engine.Scene):
         return Simulation(self, threads=threads)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (type(self), self.name, self.pack())
+        return _unpickled, (type(self), self.name, self._pack())
 
     def __repr__(self) -> str:
         return f"<sprung.Scene {self.name!r}: {self.title}>" if self.title else f"<sprung.Scene {self.name!r}>"

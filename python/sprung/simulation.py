@@ -248,7 +248,7 @@ class Simulation(_engine.Simulation):
         >>> cloth.settle() < 0.01
         True
         """
-        return self.bring_to_rest(residual_force, max_steps)[1]
+        return self._bring_to_rest(residual_force, max_steps)[1]
 
     @property
     def energy(self) -> Energy[float]:
@@ -259,7 +259,7 @@ class Simulation(_engine.Simulation):
         >>> jelly.energy.kinetic
         0.0
         """
-        return Energy(*self.energies())
+        return Energy(*self._energies())
 
     @property
     def stability(self) -> Stability:
@@ -270,26 +270,26 @@ class Simulation(_engine.Simulation):
         >>> jelly.stability.certified.set_by
         'spring 3945 of jelly (points 487 and 587)'
         """
-        told = self.limits()
+        told = self._limits()
         certified, every_configuration = (Limit(*told.pop(key)) for key in ("certified", "every_configuration"))
         return Stability(**told, certified=certified, every_configuration=every_configuration)
 
     @property
     def certified_limit(self) -> Limit:
         """The limit on ``dt`` in this configuration, as quickly as three steps."""
-        return Limit(*self.quick_limit())
+        return Limit(*self._quick_limit())
 
     @property
     def planes(self) -> list[Plane]:
         """The ground planes; set them as a whole."""
         return [
             Plane(point=point, normal=normal, stiffness=stiffness, damping=damping, law=law)
-            for point, normal, stiffness, damping, law in self.tell_planes()
+            for point, normal, stiffness, damping, law in self._tell_planes()
         ]
 
     @planes.setter
     def planes(self, planes: Sequence[Plane]) -> None:
-        self.set_planes(list(planes))
+        self._set_planes(list(planes))
 
     @property
     def bodies(self) -> list[Body]:
@@ -300,17 +300,17 @@ class Simulation(_engine.Simulation):
         >>> bridge.bodies[0].points
         slice(0, 1000, 1)
         """
-        return [Body(*body) for body in self.tell_bodies()]
+        return [Body(*body) for body in self._tell_bodies()]
 
     @property
     def joints(self) -> list[Joint]:
         """The springs between bodies."""
-        return [Joint(*joint) for joint in self.tell_joints()]
+        return [Joint(*joint) for joint in self._tell_joints()]
 
     @property
     def surfaces(self) -> list[Surface]:
         """The surfaces, as they are now."""
-        return [Surface(body, kind, *self.surface(index)) for index, (body, kind) in enumerate(self.tell_surfaces())]
+        return [Surface(body, kind, *self._surface(index)) for index, (body, kind) in enumerate(self._tell_surfaces())]
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> Path:
         """Writes how it is now: a checkpoint (``.sprung``), a picture (``.png``), or any format of :meth:`Trajectory.save`.
@@ -327,7 +327,7 @@ class Simulation(_engine.Simulation):
             return self.run(0).save(path, **options)
         if options:
             raise TypeError(f"a checkpoint takes no option {', '.join(options)}")
-        self.save_checkpoint(Path(path))
+        self._save_checkpoint(Path(path))
         return Path(path)
 
     def _repr_png_(self) -> bytes:
@@ -339,7 +339,7 @@ class Simulation(_engine.Simulation):
         return f"<sprung.Simulation{named}: {size}, t = {self.time:.6g} s, step {self.steps_taken}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (type(self), self._source, self.pack(), self.threads)
+        return _unpickled, (type(self), self._source, self._pack(), self.threads)
 
 
 def load(path: str | os.PathLike[str], *, threads: int | None = None) -> Simulation:

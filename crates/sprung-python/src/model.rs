@@ -9,7 +9,7 @@ use sprung::build::{Lattice, Material, ModelBuilder, SpringKind, pairs_between, 
 use sprung::scene::MAX_POINTS;
 use sprung::{Code, DVec3, Error, Params, Result, State, SurfaceKind, Vec3};
 
-use crate::errors::raised;
+use crate::errors::{raised, within};
 use crate::numbers;
 
 /// Memory of a point and of a spring while they are built and simulated, bytes.
@@ -21,6 +21,7 @@ pub struct Model {
     pub model: Arc<sprung::Model>,
     pub params: Params,
     pub state: State,
+    /// What it is called.
     #[pyo3(get)]
     pub title: String,
 }
@@ -75,11 +76,13 @@ impl Model {
         Ok(Self { model: Arc::new(model), params, state, title })
     }
 
+    /// How many points there are.
     #[getter]
     fn point_count(&self) -> usize {
         self.model.point_count()
     }
 
+    /// How many springs there are.
     #[getter]
     fn spring_count(&self) -> usize {
         self.model.spring_count()
@@ -118,7 +121,7 @@ impl Arrays {
             let first = builder.point_count();
             for point in first..first + count {
                 let added = builder.add_point(self.positions[point], self.mass[point]);
-                added.map_err(|error| error.at_field(format!("points[{point}]")))?;
+                added.map_err(|error| within(format!("points[{point}]"), &error))?;
             }
             let body = first..first + count;
             while next < self.springs.len() && self.springs[next].iter().all(|end| body.contains(end)) {
@@ -137,7 +140,7 @@ impl Arrays {
         }
         for (point, &velocity) in self.velocities.iter().flatten().enumerate() {
             let set = builder.set_velocity(point, velocity);
-            set.map_err(|error| error.at_field(format!("velocities[{point}]")))?;
+            set.map_err(|error| within(format!("velocities[{point}]"), &error))?;
         }
         builder.build()
     }
@@ -145,14 +148,13 @@ impl Arrays {
     fn add_spring(&self, builder: &mut ModelBuilder, index: usize) -> Result<()> {
         let [a, b] = self.springs[index];
         let material = Material { stiffness: self.stiffness[index], damping: self.damping[index] };
-        let add = || {
+        let mut add = || {
             let spring = builder.add_spring(a, b, material)?;
             self.rest_lengths
                 .as_ref()
                 .map_or(Ok(()), |lengths| builder.set_rest_length(spring, lengths[index]))
         };
-        let mut add = add;
-        add().map_err(|error| error.at_field(format!("springs[{index}]")))
+        add().map_err(|error| within(format!("springs[{index}]"), &error))
     }
 
     /// The triangles whose first corner is one of the body's points: a skin if they are closed, cloth if not.

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use sprung::{Change, Code, ContactLaw, DVec3, Error, Grab, Params, Plane, Vec3};
 use sprung_driver::soft_spring;
 
-use crate::errors::raised;
+use crate::errors::{raised, within};
 use crate::simulation::{Inner, Simulation};
 use crate::{numbers, tell, views};
 
@@ -55,10 +55,13 @@ impl Simulation {
     }
 
     #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
+    #[pyo3(name = "_tell_planes")]
     fn tell_planes(&self, py: Python<'_>) -> Vec<(tell::Vector, tell::Vector, f32, f32, &'static str)> {
         self.lock(py).simulation.params().planes.iter().map(tell::plane).collect()
     }
 
+    /// All ground planes.
+    #[pyo3(name = "_set_planes")]
     fn set_planes(&self, py: Python<'_>, planes: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
         self.change(py, Change::Planes(planes_from(&planes)?))
     }
@@ -265,11 +268,13 @@ fn plane_from(index: usize, plane: &Bound<'_, PyAny>) -> PyResult<Plane> {
             return Err(raised(Error::new(Code::OutOfRange, sentence).at_field(field("law"))));
         }
     };
-    Ok(Plane {
+    let plane = Plane {
         point,
         normal: (normal / largest).normalize().as_vec3(),
         stiffness: plane.getattr("stiffness")?.extract()?,
         damping: plane.getattr("damping")?.extract()?,
         law,
-    })
+    };
+    plane.validate().map_err(|error| raised(within(format!("planes[{index}]"), &error)))?;
+    Ok(plane)
 }

@@ -27,6 +27,7 @@ pub fn builtin() -> Vec<(&'static str, String, &'static str)> {
 /// A scene and the name it goes by. It never changes.
 #[pyclass(frozen, subclass, module = "sprung._engine")]
 pub struct Scene {
+    /// The name it goes by.
     #[pyo3(get)]
     pub name: String,
     pub scene: scenes::Scene,
@@ -90,12 +91,8 @@ impl Scene {
         self.scene.to_toml()
     }
 
-    /// Whether a body is made from a mesh: the text alone is then not all of it.
-    fn has_meshes(&self) -> bool {
-        !self.scene.meshes().is_empty()
-    }
-
     /// Its text and its meshes.
+    #[pyo3(name = "_pack")]
     fn pack<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let mut pack = Pack::new();
         pack.text(&self.scene.to_toml()).meshes(&self.scene.meshes());

@@ -133,6 +133,7 @@ impl Simulation {
     }
 
     /// Brings it to rest; gives the steps that took and the largest force that is left, N.
+    #[pyo3(name = "_bring_to_rest")]
     fn bring_to_rest(
         &self,
         py: Python<'_>,
@@ -256,21 +257,25 @@ impl Simulation {
     }
 
     #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
+    #[pyo3(name = "_tell_bodies")]
     fn tell_bodies<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PySlice>, Bound<'py, PySlice>)> {
         tell::bodies(py, self.lock(py).simulation.model())
     }
 
+    #[pyo3(name = "_tell_joints")]
     fn tell_joints<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PySlice>)> {
         tell::joints(py, self.lock(py).simulation.model())
     }
 
     /// Body and kind of every surface.
+    #[pyo3(name = "_tell_surfaces")]
     fn tell_surfaces(&self, py: Python<'_>) -> Vec<(String, &'static str)> {
         tell::surfaces(self.lock(py).simulation.model())
     }
 
     /// Vertices (m) and triangles of a surface now: points, or an artist's mesh that they carry along.
     #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
+    #[pyo3(name = "_surface")]
     fn surface<'py>(
         &self,
         py: Python<'py>,
@@ -292,6 +297,7 @@ impl Simulation {
     }
 
     /// Where the energy is, and where it went.
+    #[pyo3(name = "_energies")]
     fn energies(&self, py: Python<'_>) -> PyResult<[f64; 9]> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;
@@ -311,11 +317,13 @@ impl Simulation {
     }
 
     /// The limits on dt, and what sets them.
+    #[pyo3(name = "_limits")]
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         tell::stability(py, &self.lock(py).simulation)
     }
 
     /// The certified limit alone, as quickly as three steps.
+    #[pyo3(name = "_quick_limit")]
     fn quick_limit(&self, py: Python<'_>) -> PyResult<(f64, String, Option<usize>, Vec<usize>)> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;
@@ -333,6 +341,7 @@ impl Simulation {
     }
 
     /// All of it but where it came from, as bytes.
+    #[pyo3(name = "_pack")]
     fn pack<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;
@@ -341,6 +350,7 @@ impl Simulation {
     }
 
     /// Writes a checkpoint.
+    #[pyo3(name = "_save_checkpoint")]
     fn save_checkpoint(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;

@@ -48,7 +48,10 @@ impl Plane {
     }
 
     /// Checks ranges and that the normal has unit length.
-    pub(crate) fn validate(&self) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`], naming the field.
+    pub fn validate(&self) -> Result<()> {
         check_vector("point", self.point)?;
         check_vector("normal", self.normal)?;
         check_in("stiffness", self.stiffness, &STIFFNESS_RANGE)?;

@@ -1,0 +1,58 @@
+"""The package itself: its documentation, its command, its types."""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import sprung
+
+
+def test_everything_public_is_documented() -> None:
+    for name in sprung.__all__:
+        value = getattr(sprung, name)
+        if not (inspect.isclass(value) or inspect.isfunction(value)):
+            continue
+        assert value.__doc__, f"{name} has no documentation"
+        assert value.__module__.startswith("sprung"), name
+        if not inspect.isclass(value):
+            continue
+        for attribute, member in inspect.getmembers(value):
+            if attribute.startswith("_") or not (inspect.isroutine(member) or inspect.isdatadescriptor(member)):
+                continue
+            if inspect.isclass(member) or getattr(member, "__objclass__", None) in (tuple, BaseException):
+                continue
+            if hasattr(ValueError, attribute) or hasattr(tuple, attribute):
+                continue
+            assert inspect.getdoc(member), f"{name}.{attribute} has no documentation"
+
+
+def test_help_teaches() -> None:
+    said = subprocess.run(
+        [sys.executable, "-c", "import sprung; help(sprung)"], capture_output=True, text=True, check=True
+    ).stdout
+    for word in ("jelly.run(3, fps=25)", "Units are SI", "BlowUp"):
+        assert word in said
+
+
+def test_the_command_is_there() -> None:
+    def sprung_says(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([sys.executable, "-m", "sprung", *arguments], capture_output=True, text=True)
+
+    assert sprung_says("--version").stdout.strip() == f"sprung {sprung.__version__}"
+    refused = sprung_says("run", "jely")
+    assert refused.returncode == 2 and 'did you mean "jelly"?' in refused.stderr
+    blew_up = sprung_says("run", "jelly", "--set", "dt=0.02")
+    assert blew_up.returncode == 3 and "blew up" in blew_up.stderr
+
+
+def test_the_example_of_the_first_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert sprung.__doc__ is not None
+    lines = [line.removeprefix("    ") for line in sprung.__doc__.splitlines() if line.startswith("    ")]
+    monkeypatch.chdir(tmp_path)
+    exec(compile("\n".join(lines), "the first page", "exec"), {})
+    assert (tmp_path / "jelly.gif").stat().st_size > 10_000
