@@ -1,6 +1,6 @@
 """Compares a table and a NumPy archive of the same run: the same numbers, to the bit.
 
-Run by `cargo xtask python` as: check_outputs.py RUN.csv RUN.npz
+Run by `cargo xtask numpy` as: check_outputs.py RUN.csv RUN.npz
 """
 
 import sys

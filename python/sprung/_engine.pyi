@@ -8,7 +8,25 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
-__all__: list[str]
+__all__ = [
+    "BUILTIN",
+    "EXPORTERS",
+    "Frames",
+    "Model",
+    "Recorder",
+    "Scene",
+    "Simulation",
+    "__version__",
+    "after_fork",
+    "chain",
+    "connect_between",
+    "connect_within",
+    "lattice",
+    "lattice_side",
+    "main",
+    "read_checkpoint",
+    "toml_of",
+]
 
 _Vector = tuple[float, float, float]
 

@@ -9,6 +9,7 @@ mod fuzz;
 mod instructions;
 mod levels;
 mod npm;
+mod python;
 mod readers;
 mod serve;
 mod shell;
@@ -63,7 +64,12 @@ const STAGES: &[Stage] = &[
         about: "a real window on a virtual display does what a person asks of it",
         run: window_story::run_all,
     },
-    Stage { name: "python", about: "NumPy reads what the command writes", run: readers::python },
+    Stage { name: "numpy", about: "NumPy reads what the command writes", run: readers::numpy },
+    Stage {
+        name: "python",
+        about: "the Python package is built, installed, typed and tested, and its notebooks run",
+        run: python::python,
+    },
     Stage {
         name: "exports",
         about: "meshio, trimesh and VTK find every vertex where the command says it is",

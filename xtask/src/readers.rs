@@ -15,14 +15,14 @@ const TOWEL: &str = "examples/towel.toml";
 /// The titles of these two.
 const TITLES: [&str; 2] = ["A pebble of jelly", "A towel on a rail"];
 /// The Python that the system has.
-const SYSTEM: &str = if cfg!(windows) { "python" } else { "python3" };
+pub const SYSTEM: &str = if cfg!(windows) { "python" } else { "python3" };
 /// The Khronos validator, as npm knows it.
 const VALIDATOR: &str = "gltf-validator@2.0.0-dev.3.10";
 
 /// The same run as a table and as a NumPy archive: Python must find the same numbers in both.
-pub fn python() -> Outcome {
+pub fn numpy() -> Outcome {
     let python = python_with("venv", SYSTEM, &["numpy"])?;
-    let folder = fresh_folder("python-check")?;
+    let folder = fresh_folder("numpy-check")?;
     let [table, archive] = ["jelly.csv", "jelly.npz"].map(|name| folder.join(name).display().to_string());
     run(&mut sprung(&["run", "jelly", "--frames", "3", "--quiet", "-o", &table, "-o", &archive]))?;
     run(program(python, &["xtask/check_outputs.py", &table, &archive]).env("PYTHONDONTWRITEBYTECODE", "1"))
@@ -148,7 +148,7 @@ fn outputs<'a>(files: &[&'a str]) -> Vec<&'a str> {
 }
 
 /// A Python of our own, below the target folder, with packages; they are installed when one of them is missing.
-fn python_with(venv: &str, system: &str, packages: &[&'static str]) -> Outcome<PathBuf> {
+pub fn python_with(venv: &str, system: &str, packages: &[&'static str]) -> Outcome<PathBuf> {
     let venv = target().join(venv);
     let python = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     let module = |name: &&'static str| match name.split("==").next() {
