@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,13 +12,17 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from tqdm.auto import tqdm
 
 from . import _engine
 from .errors import BlowUp, refusal
 from .model import Model, Plane
 from .scene import Scene
 from .trajectory import Trajectory
+
+with warnings.catch_warnings():
+    # In a notebook without ipywidgets it says that they are missing; the bar is then one of text.
+    warnings.simplefilter("ignore")
+    from tqdm.auto import tqdm
 
 __all__ = ["Body", "Energy", "Joint", "Limit", "Simulation", "Stability", "Surface", "load"]
 
