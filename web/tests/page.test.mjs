@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
-import { readFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 import { after, before, test } from "node:test";
@@ -110,6 +110,72 @@ async function drawn(page, name) {
   const picture = await page.screenshot({ path: join(tmpdir(), `sprung-${name}.png`) });
   assert.ok(picture.length > 20_000, `${name} has ${picture.length} bytes: it is blank`);
   return picture;
+}
+
+// What the canvas shows once it changes no more, held against the picture of this name in pictures/; with
+// SPRUNG_UPDATE_PICTURES it becomes that. Two pixels in a hundred may differ, as browsers draw from version to version, and
+// as numbers that tell of speed do.
+async function asStored(page, name) {
+  let picture = await page.screenshot();
+  for (let before = null, tries = 0; !before?.equals(picture) && tries < 40; tries += 1) {
+    await page.waitForTimeout(500);
+    [before, picture] = [picture, await page.screenshot()];
+  }
+  const path = join(ROOT, "web/tests/pictures", `${name}.webp`);
+  const text = picture.toString("base64");
+  if (process.env.SPRUNG_UPDATE_PICTURES) await writeFile(path, await page.evaluate(packed, text), "base64");
+  const share = await page.evaluate(differing, [text, await readFile(path, "base64")]);
+  if (share > 0.02) await writeFile(join(tmpdir(), `sprung-${name}.png`), picture);
+  assert.ok(share <= 0.02, `${name}: ${(100 * share).toFixed(1)} % of its pixels are not as stored`);
+}
+
+// A picture with little loss, in a tenth of the room.
+async function packed(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const bitmap = await createImageBitmap(new Blob([bytes]));
+  const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+  canvas.getContext("2d").drawImage(bitmap, 0, 0);
+  const blob = await canvas.convertToBlob({ type: "image/webp", quality: 0.9 });
+  const small = new Uint8Array(await blob.arrayBuffer());
+  return btoa(Array.from(small, (byte) => String.fromCharCode(byte)).join(""));
+}
+
+// The share of pixels that differ between two pictures by more than a shade.
+async function differing(pictures) {
+  const [a, b] = await Promise.all(
+    pictures.map(async (text) => {
+      const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes]));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+      context.drawImage(bitmap, 0, 0);
+      return context.getImageData(0, 0, bitmap.width, bitmap.height);
+    }),
+  );
+  if (a.width !== b.width || a.height !== b.height) return 1;
+  let count = 0;
+  for (let at = 0; at < a.data.length; at += 4) {
+    const far = [0, 1, 2].some((channel) => Math.abs(a.data[at + channel] - b.data[at + channel]) > 24);
+    if (far) count += 1;
+  }
+  return (4 * count) / a.data.length;
+}
+
+for (const [way, scene, name] of [
+  ["WebGL2", "jelly", "jelly"],
+  ["WebGPU", "jelly", "jelly"],
+  ["WebGL2", "cloth", "cloth"],
+  ["phone", "chain", "chain-phone"],
+]) {
+  test(`${scene} with ${way} looks as stored`, async () => {
+    const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+    const { context, page, wrong } = await opened(way, { fragment: `#scene=${scene}`, ...(way === "phone" ? phone : {}) });
+    await titled(page, `${scene} – sprung`);
+    await press(page, "Home");
+    await titled(page, `${scene}, paused – sprung`);
+    await asStored(page, name);
+    assert.deepEqual(wrong, []);
+    await context.close();
+  });
 }
 
 for (const way of ["WebGL2", "WebGPU"]) {
@@ -355,6 +421,20 @@ test("it is a phone's page, too", async () => {
     await page.waitForTimeout(2000);
   }
   assert.equal(await page.title(), "jelly, paused – sprung");
+  // Two fingers that move apart come nearer: much of the picture is another.
+  const apart = (by) => [{ x: 195 - by, y: 350, id: 0 }, { x: 195 + by, y: 350, id: 1 }];
+  await page.waitForTimeout(1000);
+  const far = await page.screenshot();
+  await touch("touchStart", apart(30));
+  for (let by = 40; by <= 150; by += 10) {
+    await touch("touchMove", apart(by));
+    await page.waitForTimeout(150);
+  }
+  await touch("touchEnd", []);
+  await page.waitForTimeout(2000);
+  const near = await page.screenshot({ path: join(tmpdir(), "sprung-phone-near.png") });
+  const share = await page.evaluate(differing, [far, near].map((png) => png.toString("base64")));
+  assert.ok(share > 0.05, `a pinch changes ${(100 * share).toFixed(1)} % of the picture`);
   await page.setViewportSize({ width: 844, height: 390 });
   await page.waitForTimeout(500);
   await drawn(page, "phone-across");
