@@ -25,13 +25,16 @@ from .errors import BlowUp, Error
 from .model import Lattice, Model, Plane, chain, connect_between, connect_within, grid, lattice
 from .scene import BuiltinScene, Scene, from_mesh, scene, scenes
 from .simulation import Body, Energy, Joint, Limit, Simulation, Stability, Surface, load
+from .sweep import MEASURES, BuiltinMeasure, sweep
 from .trajectory import Animation, Trajectory
 
 __all__ = [
     "EXPORTERS",
+    "MEASURES",
     "Animation",
     "BlowUp",
     "Body",
+    "BuiltinMeasure",
     "BuiltinScene",
     "Energy",
     "Error",
@@ -55,11 +58,12 @@ __all__ = [
     "load",
     "scene",
     "scenes",
+    "sweep",
 ]
 
 for _public in (BlowUp, Error, Scene, Model, Plane, Lattice, Simulation, Trajectory, Animation):
     _public.__module__ = "sprung"
-for _public_function in (chain, connect_between, connect_within, from_mesh, grid, lattice, load, scene, scenes):
+for _public_function in (chain, connect_between, connect_within, from_mesh, grid, lattice, load, scene, scenes, sweep):
     _public_function.__module__ = "sprung"
 
 # The engine's threads do not come along into a process that is forked off.
