@@ -188,7 +188,10 @@ class Model(_engine.Model):
             "triangles": triangles,
             "title": title,
         }
-        count = len(positions) if isinstance(positions, (np.ndarray, Sequence)) else len(np.asarray(positions))
+        try:
+            count = np.shape(positions)[0] if np.ndim(positions) else 0
+        except ValueError:  # a list of lists of different lengths, of which more below
+            count = 0
         named = list(bodies.items()) if bodies is not None else [("body", count)]
         made = super().__new__(cls, positions, mass, springs, bodies=named, **arguments)
         # What pickle makes it of again: copies, as an array may be written to.
@@ -211,7 +214,7 @@ class Model(_engine.Model):
         from .simulation import Simulation
 
         return Simulation(
-            self, dt=dt, substeps=substeps, gravity=gravity, planes=list(planes), threads=threads
+            self, dt=dt, substeps=substeps, gravity=gravity, planes=planes_of(planes), threads=threads
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -220,6 +223,16 @@ class Model(_engine.Model):
     def __repr__(self) -> str:
         named = f" {self.title!r}" if self.title else ""
         return f"<sprung.Model{named}: {self.point_count} points, {self.spring_count} springs>"
+
+
+def planes_of(planes: Sequence[Plane]) -> list[Plane]:
+    """The same, if they are planes."""
+    if isinstance(planes, Plane):
+        raise TypeError("planes are a list of sprung.Plane: put it in brackets")
+    for plane in planes:
+        if not isinstance(plane, Plane):
+            raise TypeError(f"planes are a list of sprung.Plane, and no {type(plane).__name__}")
+    return list(planes)
 
 
 def _unpickled(make: type[Model], arguments: dict[str, Any]) -> Model:

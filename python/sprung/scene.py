@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _engine
+from .errors import Error, refusal
 
 if TYPE_CHECKING:
     from .simulation import Simulation
@@ -96,7 +97,17 @@ class Scene(_engine.Scene):
         >>> rope.simulation().spring_count
         9
         """
-        return cls.from_toml(_engine.toml_of(json.dumps(content, default=_plain)), changes, name=name, folder=folder)
+        try:
+            text = json.dumps(content, default=_plain, allow_nan=False)
+        except ValueError:
+            raise refusal("content", "holds nan, inf or itself, and must hold finite numbers") from None
+        try:
+            return cls.from_toml(_engine.toml_of(text), changes, name=name, folder=folder)
+        except Error as error:
+            # Nobody has seen the text that its lines are of.
+            if error.field is None or error.line is None:
+                raise
+            raise refusal(error.field, error.sentence, code=error.code, fix=error.fix) from None
 
     def changed(self, changes: Changes) -> Scene:
         """The same scene with other values, by the keys that ``sprung run --set KEY=VALUE`` takes.
@@ -186,7 +197,9 @@ def _unpickled(make: Callable[..., Scene], name: str, packed: bytes) -> Scene:
 
 
 def _pairs(changes: Changes | None) -> list[tuple[str, str]]:
-    return [(key, _text(value)) for key, value in (changes or {}).items()]
+    if not isinstance(changes, Mapping | None):
+        raise TypeError(f"changes are a dictionary of keys and values, and no {type(changes).__name__}")
+    return [(str(key), _text(value)) for key, value in (changes or {}).items()]
 
 
 def _text(value: Any) -> str:

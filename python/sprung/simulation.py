@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _engine
 from .errors import BlowUp, refusal
-from .model import Model, Plane
+from .model import Model, Plane, planes_of
 from .scene import Scene
 from .trajectory import Trajectory
 
@@ -156,6 +156,9 @@ class Simulation(_engine.Simulation):
     _source: Scene | Model
 
     def __new__(cls, source: Scene | Model, **options: Any) -> Simulation:
+        if not isinstance(source, (_engine.Scene, _engine.Model)):
+            found = type(source).__name__
+            raise TypeError(f'a simulation is of a Scene or a Model, not of {found}; try sprung.scene("jelly").simulation()')
         made = super().__new__(cls, source, **options)
         made._source = source
         return made
@@ -285,16 +288,16 @@ class Simulation(_engine.Simulation):
         return Limit(*self._quick_limit())
 
     @property
-    def planes(self) -> list[Plane]:
+    def planes(self) -> tuple[Plane, ...]:
         """The ground planes; set them as a whole."""
-        return [
+        return tuple(
             Plane(point=point, normal=normal, stiffness=stiffness, damping=damping, law=law)
             for point, normal, stiffness, damping, law in self._tell_planes()
-        ]
+        )
 
     @planes.setter
     def planes(self, planes: Sequence[Plane]) -> None:
-        self._set_planes(list(planes))
+        self._set_planes(planes_of(planes))
 
     @property
     def bodies(self) -> list[Body]:

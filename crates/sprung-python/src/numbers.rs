@@ -155,6 +155,14 @@ pub fn selection(field: &str, given: &Bound<'_, PyAny>, count: usize) -> PyResul
     }
 }
 
+/// An index of one of so many points.
+pub fn point(field: &str, given: i64, count: usize) -> PyResult<usize> {
+    usize::try_from(given).ok().filter(|&point| point < count).ok_or_else(|| {
+        let sentence = format!("there is no point {given}; points are 0 to {}", count - 1);
+        raised(Error::new(Code::NotFound, sentence).at_field(field))
+    })
+}
+
 /// Indices count from 0.
 fn whole(field: &str, values: Vec<i64>) -> PyResult<Vec<usize>> {
     let to_index = |value: i64| {

@@ -164,12 +164,14 @@ impl Simulation {
     }
 
     /// Puts a point there, m, at rest.
-    fn place(&self, py: Python<'_>, point: usize, position: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn place(&self, py: Python<'_>, point: i64, position: &Bound<'_, PyAny>) -> PyResult<()> {
+        let point = numbers::point("place", point, self.points)?;
         self.change(py, Change::Place(point, numbers::vec3("place", position)?))
     }
 
     /// Carries a point along at this velocity, m/s.
-    fn carry(&self, py: Python<'_>, point: usize, velocity: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn carry(&self, py: Python<'_>, point: i64, velocity: &Bound<'_, PyAny>) -> PyResult<()> {
+        let point = numbers::point("carry", point, self.points)?;
         self.change(py, Change::Carry(point, Some(numbers::vec3("carry", velocity)?)))
     }
 
@@ -178,17 +180,18 @@ impl Simulation {
     fn drag(
         &self,
         py: Python<'_>,
-        point: usize,
+        point: i64,
         target: &Bound<'_, PyAny>,
         stiffness: Option<f32>,
         damping: Option<f32>,
     ) -> PyResult<()> {
-        let target = numbers::vec3("drag", target)?;
+        let (point, target) = (numbers::point("drag", point, self.points)?, numbers::vec3("drag", target)?);
         self.change_with(py, |inner| inner.grab(point, target, stiffness, damping).map(Change::Grab))
     }
 
     /// Lets a point go that was dragged or carried.
-    fn release(&self, py: Python<'_>, point: usize) -> PyResult<()> {
+    fn release(&self, py: Python<'_>, point: i64) -> PyResult<()> {
+        let point = numbers::point("release", point, self.points)?;
         if self.lock(py).simulation.params().carried.contains_key(&point) {
             self.change(py, Change::Carry(point, None))?;
         }
@@ -227,10 +230,6 @@ impl Inner {
         damping: Option<f32>,
     ) -> PyResult<Grab> {
         let (model, params) = (self.simulation.model(), self.simulation.params());
-        if point >= model.point_count() {
-            let sentence = format!("there is no point {point}; points are 0 to {}", model.point_count() - 1);
-            return Err(raised(Error::new(Code::NotFound, sentence).at_field("drag")));
-        }
         if params.is_anchored(point) {
             let sentence = format!("{} is fixed, and a pull does not move it", model.point_name(point));
             return Err(raised(Error::new(Code::Conflict, sentence).at_field("drag").with_fix("unpin it")));

@@ -130,8 +130,13 @@ pub fn toml_of(json: &str) -> PyResult<String> {
     let value: serde_json::Value = serde_json::from_str(json)
         .map_err(|error| raised(Error::new(Code::Syntax, format!("is no JSON: {error}"))))?;
     toml::to_string(&value).map_err(|error| {
-        raised(
-            Error::new(Code::WrongType, format!("cannot be written as a scene: {error}")).at_field("scene"),
-        )
+        // Of what JSON can hold, TOML has no word for nothing.
+        let sentence = match error.to_string() {
+            said if said.contains("unit type") => {
+                "holds None, and must hold numbers, texts, lists and dictionaries".to_owned()
+            }
+            said => format!("cannot be a scene: {said}"),
+        };
+        raised(Error::new(Code::WrongType, sentence).at_field("content"))
     })
 }

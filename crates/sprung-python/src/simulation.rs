@@ -60,7 +60,7 @@ impl Simulation {
     fn new(
         py: Python<'_>,
         source: Source,
-        threads: Option<usize>,
+        threads: Option<i64>,
         packed: Option<&[u8]>,
         dt: Option<f64>,
         substeps: Option<u32>,
@@ -396,7 +396,7 @@ impl Simulation {
         scene: Option<sprung::scene::Scene>,
         name: String,
         title: String,
-        threads: Option<usize>,
+        threads: Option<i64>,
     ) -> Result<Self> {
         let mut simulation = simulation?;
         let (workers, lent) = lend(threads)?;
@@ -468,7 +468,7 @@ impl Inner {
         let mut simulation = sprung::Simulation::new(model, params, state)?;
         simulation.keep_ledger(self.simulation.keeps_ledger());
         simulation.keep_history(0);
-        simulation.set_workers(lend(Some(self.lent.count()))?.0);
+        simulation.set_workers(lend(Some(self.lent.count() as i64))?.0);
         self.simulation = simulation;
         self.current = views::Current::default();
         Ok(())

@@ -29,12 +29,12 @@ pub struct Lent {
 }
 
 /// So many threads, or one for each processor.
-pub fn lend(threads: Option<usize>) -> Result<(Arc<dyn Workers>, Lent)> {
-    let threads = threads.unwrap_or_else(sprung_cli::processors);
-    if !(1..=MOST).contains(&threads) {
-        let sentence = format!("is {threads}, and must be from 1 to {MOST}");
+pub fn lend(threads: Option<i64>) -> Result<(Arc<dyn Workers>, Lent)> {
+    let threads = threads.map_or_else(|| Ok(sprung_cli::processors()), usize::try_from);
+    let Some(threads) = threads.ok().filter(|threads| (1..=MOST).contains(threads)) else {
+        let sentence = format!("must be from 1 to {MOST}");
         return Err(Error::new(Code::OutOfRange, sentence).at_field("threads"));
-    }
+    };
     let mut pools = pools();
     let workers = match pools.of.get(&threads) {
         Some(workers) => workers.clone(),
@@ -58,7 +58,7 @@ impl Lent {
         if self.forks == pools().forks {
             return Ok(None);
         }
-        lend(Some(self.threads)).map(Some)
+        lend(Some(self.threads as i64)).map(Some)
     }
 }
 

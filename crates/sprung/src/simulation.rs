@@ -26,6 +26,9 @@ use changing::Placed;
 pub use checkpoint::Checkpoint;
 pub use settling::Settling;
 
+/// Copying so many points takes as long as asking the solver for the motion of one.
+const POINTS_TO_A_DRIVE: usize = 16;
+
 /// Model, parameters, state and solver bundled: step, frame, settle, change a parameter, rewind, reset, snapshot.
 ///
 /// ```
@@ -348,11 +351,13 @@ impl Simulation {
             ledger.begin(&self.model, &self.params, self.current.state());
         }
         if is_driven {
+            self.copy_for_many_drives();
             self.drives.begin(&self.model, &self.params, |point| self.current.motion64(point));
         }
         let finite = self.current.advance(&self.params, count, &*self.workers);
         let mut stored_by_hand = 0.0;
         if is_driven {
+            self.copy_for_many_drives();
             let (work_in, stored) =
                 self.drives.end(&self.model, &self.params, |point| self.current.motion64(point));
             self.current.counters().ledger.work_in += work_in;
@@ -363,6 +368,14 @@ impl Simulation {
             self.current.counters().ledger = sums;
         }
         finite
+    }
+
+    /// Where many points are driven, as by wind, their motions are asked for one by one: quickly once all have been copied.
+    fn copy_for_many_drives(&self) {
+        let drives = self.params.external_forces.len() + self.params.grabs.len() + self.params.carried.len();
+        if drives > self.model.point_count() / POINTS_TO_A_DRIVE {
+            self.current.state();
+        }
     }
 
     /// Packs anew what has changed: once before the next step, however many changes there were.
