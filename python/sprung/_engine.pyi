@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,7 +84,7 @@ class Simulation:
     @property
     def dt(self) -> float: ...
     @dt.setter
-    def dt(self, value: float | None) -> None: ...
+    def dt(self, value: float | Literal["auto"]) -> None: ...
     substeps: int
     keeps_ledger: bool
     def __new__(
@@ -93,7 +93,7 @@ class Simulation:
         *,
         threads: int | None = None,
         packed: bytes | None = None,
-        dt: float | None = None,
+        dt: float | Literal["auto"] | None = None,
         substeps: int | None = None,
         gravity: ArrayLike | None = None,
         planes: list[Any] | None = None,

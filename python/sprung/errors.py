@@ -81,7 +81,8 @@ class BlowUp(Error):
     suggested_dt: float | None
     #: By how much to multiply all damping so that ``dt`` may stay, where damping is to blame.
     suggested_damping_scale: float | None
-    #: The frames until then, where :meth:`Simulation.run` was under way.
+    #: The frames until then, where :meth:`Simulation.run` was under way; those in which energy came from
+    #: nowhere already are left out.
     trajectory: Trajectory | None = None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -204,13 +204,13 @@ class Model(_engine.Model):
     def simulation(
         self,
         *,
-        dt: float | None = None,
+        dt: float | Literal["auto"] = "auto",
         substeps: int = 1,
         gravity: ArrayLike = GRAVITY,
         planes: Sequence[Plane] = (),
         threads: int | None = None,
     ) -> Simulation:
-        """A simulation of it: ``dt`` in s, by default the largest that is safely stable, ``gravity`` in m/s²."""
+        """A simulation of it: ``dt`` in s, or the largest that is safely stable, ``gravity`` in m/s²."""
         from .simulation import Simulation
 
         return Simulation(

@@ -172,6 +172,19 @@ class Trajectory:
         with tempfile.TemporaryDirectory() as folder:
             return Animation(self.save(Path(folder) / f"animation.{format}", size=size).read_bytes(), format)
 
+    def picture(self, *, at: float | None = None, size: tuple[int, int] = (640, 360)) -> bytes:
+        """A picture of the frame nearest to ``at`` (s), or of the last, as the bytes of a PNG.
+
+        >>> import sprung
+        >>> sprung.scene("jelly").simulation().run(0.2, fps=25).picture(at=0.1)[:4]
+        b'\\x89PNG'
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            return self.save(Path(folder) / "picture.png", at=at, size=size, progress=False).read_bytes()
+
+    def _repr_png_(self) -> bytes:
+        return self.picture()
+
     def plot_energy(self, axes: Axes | None = None) -> Axes:
         """Plots where the energy is over time, and where it went as far as the ledger was kept, with matplotlib."""
         axes = _axes(axes)
@@ -189,14 +202,21 @@ class Trajectory:
         axes.legend()
         return axes
 
-    def plot(self, points: int | Sequence[int], axis: str = "y", axes: Axes | None = None) -> Axes:
-        """Plots a coordinate of one point or several over time: ``"x"``, ``"y"``, ``"z"``; ``"vx"``, ``"vy"``, ``"vz"``; or
-        ``"speed"``."""
-        values, label = self._coordinate(axis)
+    def plot(
+        self,
+        points: int | Sequence[int],
+        axis: str = "y",
+        axes: Axes | None = None,
+        *,
+        label: str | None = None,
+    ) -> Axes:
+        """Plots a coordinate of one point or several over time: ``"x"``, ``"y"``, ``"z"``; ``"vx"``, ``"vy"``,
+        ``"vz"``; or ``"speed"``. ``label`` is what the legend calls it, by default the point."""
+        values, quantity = self._coordinate(axis)
         axes = _axes(axes)
         for point in np.atleast_1d(points):
-            axes.plot(self.times, values[:, point], label=f"point {point}")
-        axes.set(xlabel="time (s)", ylabel=label, title=self.title)
+            axes.plot(self.times, values[:, point], label=label or f"point {point}")
+        axes.set(xlabel="time (s)", ylabel=quantity, title=self.title)
         axes.legend()
         return axes
 

@@ -149,6 +149,7 @@ def test_what_cannot_be_a_model_is_told_in_a_sentence(arguments: dict[str, Any],
     [
         ("dt", -1, "dt: is -1, and must be from 1e-9 to 1e3"),
         ("dt", float("nan"), "dt: is NaN"),
+        ("dt", "soon", 'dt: is "soon", and must be a number of seconds or "auto"'),
         ("substeps", 0, "substeps: is 0"),
         ("substeps", -3, "substeps: "),
         ("gravity", [0, 1], "gravity: has shape (2,), and must have shape (3,)"),

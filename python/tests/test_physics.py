@@ -94,6 +94,11 @@ def test_stability_is_told(jelly: sprung.Simulation) -> None:
     assert jelly.springs[stability.certified.spring].tolist() == stability.certified.points
 
 
+def test_a_step_that_is_safe_in_every_shape(jelly: sprung.Simulation) -> None:
+    jelly.dt = "auto"
+    assert jelly.dt == pytest.approx(0.95 * jelly.stability.every_configuration.dt, rel=1e-3)
+
+
 def test_hands(jelly: sprung.Simulation) -> None:
     jelly.place(0, [1, 2, 3])
     assert jelly.positions[0].tolist() == [1, 2, 3]

@@ -14,17 +14,17 @@ use crate::{numbers, tell, views};
 
 #[pymethods]
 impl Simulation {
-    /// Length of a step, s; set `None` for the largest that is safely stable.
+    /// Length of a step, s; set `"auto"` for the largest that is safely stable.
     #[getter]
     fn dt(&self, py: Python<'_>) -> f64 {
         self.lock(py).simulation.params().dt
     }
 
-    /// A number, or none for the largest that is safely stable.
     #[setter]
-    fn set_dt(&self, py: Python<'_>, dt: Option<f64>) -> PyResult<()> {
-        self.change_with(py, |inner| {
-            dt.map_or_else(|| tell::auto_dt(&inner.simulation), Ok).map(Change::Dt).map_err(raised)
+    fn set_dt(&self, py: Python<'_>, dt: StepLength) -> PyResult<()> {
+        self.change_with(py, |inner| match dt.seconds()? {
+            Some(dt) => Ok(Change::Dt(dt)),
+            None => tell::auto_dt(&inner.simulation).map(Change::Dt).map_err(raised),
         })
     }
 
@@ -218,6 +218,29 @@ impl Simulation {
             set(&mut params);
             Ok(Change::Params(Arc::new(params)))
         })
+    }
+}
+
+/// How long a step is to be: a number, s, or "auto".
+#[derive(FromPyObject)]
+pub enum StepLength {
+    #[pyo3(transparent, annotation = "float")]
+    Seconds(f64),
+    #[pyo3(transparent, annotation = "str")]
+    Word(String),
+}
+
+impl StepLength {
+    /// Nothing for the largest that is safely stable.
+    pub fn seconds(&self) -> PyResult<Option<f64>> {
+        match self {
+            Self::Seconds(seconds) => Ok(Some(*seconds)),
+            Self::Word(word) if word == "auto" => Ok(None),
+            Self::Word(word) => {
+                let sentence = format!("is \"{word}\", and must be a number of seconds or \"auto\"");
+                Err(raised(Error::new(Code::WrongType, sentence).at_field("dt")))
+            }
+        }
     }
 }
 
