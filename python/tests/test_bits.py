@@ -124,3 +124,18 @@ def test_reset_goes_back_to_the_start(jelly: sprung.Simulation) -> None:
     jelly.reset()
     assert jelly.state_hash == start
     assert jelly.gravity.tolist() == pytest.approx([0, -9.81, 0])
+
+
+def test_threads_settle_to_the_same_bits() -> None:
+    sheet = sprung.grid(300, 300, spacing=0.1)
+    springs = sheet.springs("structural", "shear")
+    model = sprung.Model(
+        sheet.positions, 0.01, springs, stiffness=80, damping=0.05, pinned=sheet.side("left")
+    )
+    hashes = set()
+    for threads in (1, 2, 3):
+        simulation = model.simulation(threads=threads)
+        # A little more than half of a point's weight: some dozens of steps, with several stops.
+        assert simulation.settle(residual_force=0.06) <= 0.06
+        hashes.add(simulation.state_hash)
+    assert len(hashes) == 1

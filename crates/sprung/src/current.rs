@@ -162,9 +162,9 @@ impl Current {
         finite
     }
 
-    /// Stops every point where it is.
-    pub fn stop(&mut self) {
-        self.ahead().stop();
+    /// Stops every point where it is, in the middle of a step of `dt` (s).
+    pub fn stop(&mut self, dt: f64) {
+        self.ahead().stop(dt);
     }
 
     /// The solver, at this state, to change it there.

@@ -102,6 +102,39 @@ impl Region {
         }
     }
 
+    /// Copies where points of the region before it are, as far as springs of that reach.
+    pub fn look_back(&mut self, previous: &Self) {
+        let end = (self.blocks.start - self.first_block) * BLOCK;
+        let begin = previous.index(self.first_block * BLOCK);
+        for (here, there) in [(&mut self.points, &previous.points), (&mut self.low, &previous.low)] {
+            for (here, there) in here.all_mut().into_iter().zip(there.all()) {
+                here[..end].copy_from_slice(&there[begin..begin + end]);
+            }
+        }
+    }
+
+    /// Stops every point of its own: each goes half a step of `dt` (s) back and has no velocity then.
+    ///
+    /// A step keeps, in a mode of squared frequency ω², not ½v² + ½ω²x² but ½v² + ½ω²x² − ½dt·ω²·x·v. At x − ½dt·v and at rest
+    /// that is less by ½v²(1 − ¼ω²dt²), for every dt that is stable; at x it could be more, and a fast vibration would grow with
+    /// every stop.
+    pub fn stop(&mut self, dt: f64) {
+        let own =
+            (self.blocks.start - self.first_block) * BLOCK..(self.blocks.end - self.first_block) * BLOCK;
+        let [x, y, z, u, v, w] = self.points.all_mut();
+        let [x_low, y_low, z_low, u_low, v_low, w_low] = self.low.all_mut();
+        let whole = |high: f32, low: f32| f64::from(high) + f64::from(low);
+        for (x, x_low, v, v_low) in [(x, x_low, u, u_low), (y, y_low, v, v_low), (z, z_low, w, w_low)] {
+            for at in own.clone() {
+                let exact = whole(x[at], x_low[at]) - 0.5 * dt * whole(v[at], v_low[at]);
+                x[at] = exact as f32;
+                x_low[at] = (exact - f64::from(x[at])) as f32;
+            }
+            v.fill(0.0);
+            v_low.fill(0.0);
+        }
+    }
+
     /// Makes memory for a state that is kept, if there is none.
     pub fn prepare_to_keep(&mut self) {
         let alike = |arrays: &Arrays<6>| Arrays::with_windows(arrays.len(), arrays.spare());

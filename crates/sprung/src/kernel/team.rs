@@ -252,8 +252,8 @@ impl Team {
         sums
     }
 
-    /// Stops every point where it is.
-    pub fn stop(&mut self) {
+    /// Stops every point where it is, in the middle of a step of `dt` (s): see [`Region::stop`].
+    pub fn stop(&mut self, dt: f64) {
         for index in 0..self.regions.len() {
             let mut region = lock(&self.regions[index]);
             if self.are_behind {
@@ -262,9 +262,13 @@ impl Team {
             if self.are_kept_here {
                 region.move_away();
             }
-            let Region { points, low, .. } = &mut *region;
-            for arrays in [points, low] {
-                arrays.all_mut()[3..].iter_mut().for_each(|velocity| velocity.fill(0.0));
+            region.stop(dt);
+        }
+        for index in 1..self.regions.len() {
+            let (before, after) = self.regions.split_at_mut(index);
+            if let (Some(before), Some(after)) = (before.last_mut(), after.first_mut()) {
+                own(after).look_back(own(before));
+                own(before).look_ahead(&self.plan, own(after));
             }
         }
         (self.are_behind, self.are_kept_here) = (false, false);

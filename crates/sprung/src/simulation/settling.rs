@@ -134,7 +134,7 @@ impl Simulation {
         let before = self.current.copied();
         let energy_before = self.energy().total();
         self.refresh_solver();
-        self.current.stop();
+        self.current.stop(self.params.dt);
         let residual_force = self.current.solver().residual_force(&self.params);
         let allowed = options.residual_force.unwrap_or_else(|| default_residual(&self.params));
         let so_far = Settled { steps: 0, residual_force };
@@ -161,7 +161,7 @@ impl Simulation {
             }
             let kinetic = self.current.kinetic_energy(&*self.workers);
             if kinetic < *kinetic_before {
-                self.current.stop();
+                self.current.stop(self.params.dt);
                 so_far.residual_force = self.current.solver().residual_force(&self.params);
                 *kinetic_before = 0.0;
             } else {

@@ -117,9 +117,9 @@ impl SymplecticEuler {
         self.team.kinetic_energy(workers)
     }
 
-    /// Stops every point where it is.
-    pub(crate) fn stop(&mut self) {
-        self.team.stop();
+    /// Stops every point where it is, in the middle of a step of `dt` (s).
+    pub(crate) fn stop(&mut self, dt: f64) {
+        self.team.stop(dt);
     }
 
     /// Hands out positions and velocities, without what rounding dropped, and leaves the rest of the snapshot as it is.
