@@ -23,7 +23,7 @@ from . import _engine
 from ._engine import EXPORTERS, __version__
 from .errors import BlowUp, Error
 from .model import Lattice, Model, Plane, chain, connect_between, connect_within, grid, lattice
-from .scene import BuiltinScene, Scene, from_mesh, scene, scenes
+from .scene import BuiltinScene, Scene, View, from_mesh, scene, scenes
 from .simulation import Body, Energy, Joint, Limit, Simulation, Stability, Surface, load
 from .sweep import MEASURES, BuiltinMeasure, sweep
 from .trajectory import Animation, Trajectory
@@ -48,6 +48,7 @@ __all__ = [
     "Stability",
     "Surface",
     "Trajectory",
+    "View",
     "__version__",
     "chain",
     "connect_between",
@@ -61,7 +62,7 @@ __all__ = [
     "sweep",
 ]
 
-for _public in (BlowUp, Error, Scene, Model, Plane, Lattice, Simulation, Trajectory, Animation):
+for _public in (BlowUp, Error, Scene, Model, Plane, Lattice, Simulation, Trajectory, Animation, View):
     _public.__module__ = "sprung"
 for _public_function in (chain, connect_between, connect_within, from_mesh, grid, lattice, load, scene, scenes, sweep):
     _public_function.__module__ = "sprung"

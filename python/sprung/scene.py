@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import base64
+import html
 import json
 import os
+import re
 import warnings
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,7 +21,12 @@ from .errors import Error, refusal
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-__all__ = ["BuiltinScene", "Scene", "from_mesh", "scene", "scenes"]
+__all__ = ["BuiltinScene", "Scene", "View", "from_mesh", "scene", "scenes"]
+
+#: Where ``cargo xtask web --serve`` serves the window.
+PAGE = "http://127.0.0.1:8080/"
+#: The longest link: every browser and most programs for messages take that.
+MOST_CHARACTERS = 32_000
 
 #: What a key of a scene may be set to.
 Value = float | str | bool | Sequence[float]
@@ -127,6 +136,36 @@ class Scene(_engine.Scene):
 
         return Simulation(self, threads=threads)
 
+    def link(self, page: str = PAGE) -> str:
+        """The address at which the window in a browser shows this scene: ``page`` is where that is served, as
+        by ``cargo xtask web --serve``. See docs/web.md. Raises :class:`Error` for scenes with a mesh, and for
+        those whose text is too long for an address.
+
+        >>> import sprung
+        >>> sprung.scene("jelly").link()[:44]
+        'http://127.0.0.1:8080/#v=0.1.0&name=jelly&to'
+        """
+        text = self.to_toml()
+        if self._has_meshes():
+            raise refusal("link", "cannot hold a mesh", code="unsupported", fix="send the scene's file and its meshes")
+        pack = zlib.compressobj(9, wbits=-zlib.MAX_WBITS)
+        packed = base64.urlsafe_b64encode(pack.compress(text.encode()) + pack.flush()).decode().rstrip("=")
+        name = re.sub("[^A-Za-z0-9_-]", "-", self.name)
+        link = f"v={_engine.__version__}&name={name}&toml={packed}"
+        if len(link) > MOST_CHARACTERS:
+            sentence = f"would have {len(link)} characters, and at most {MOST_CHARACTERS} are allowed"
+            raise refusal("link", sentence, code="too_large", fix="send the scene's file")
+        return f"{page}#{link}"
+
+    def view(self, page: str = PAGE, *, size: tuple[int, int] = (960, 600)) -> View:
+        """The window in a notebook, to play and to pull at, where :meth:`link` leads: ``page`` must be served.
+
+        >>> import sprung
+        >>> sprung.scene("jelly").view()
+        <sprung.View of 'jelly' at http://127.0.0.1:8080/>
+        """
+        return View(self.name, page, self.link(page), size)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, (type(self), self.name, self._pack())
 
@@ -138,6 +177,23 @@ class Scene(_engine.Scene):
         for sentence in made.warnings:
             warnings.warn(f"{made.name}: {sentence}", stacklevel=3)
         return made
+
+
+class View:
+    """The window in a browser, inside a notebook."""
+
+    def __init__(self, name: str, page: str, link: str, size: tuple[int, int]) -> None:
+        self.name, self.page, self.link, self.size = name, page, link, size
+
+    def _repr_html_(self) -> str:
+        width, height = self.size
+        return (
+            f'<iframe src="{html.escape(self.link)}" title="{html.escape(self.name)}" '
+            f'width="{width:d}" height="{height:d}" style="border: none"></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        return f"<sprung.View of {self.name!r} at {self.page}>"
 
 
 def scene(name: str | os.PathLike[str], changes: Changes | None = None) -> Scene:

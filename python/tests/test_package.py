@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import base64
 import inspect
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
 
 import sprung
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_everything_public_is_documented() -> None:
@@ -56,3 +60,15 @@ def test_the_example_of_the_first_page(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.chdir(tmp_path)
     exec(compile("\n".join(lines), "the first page", "exec"), {})
     assert (tmp_path / "jelly.gif").stat().st_size > 10_000
+
+
+def test_a_link_holds_the_scene() -> None:
+    scene = sprung.scene("cloth", {"dt": 0.004})
+    fragment = scene.link("https://example.org/").partition("#")[2]
+    parts = dict(part.split("=", 1) for part in fragment.split("&"))
+    assert (parts["v"], parts["name"]) == (sprung.__version__, "cloth")
+    packed = base64.urlsafe_b64decode(parts["toml"] + "=" * (-len(parts["toml"]) % 4))
+    assert zlib.decompress(packed, wbits=-zlib.MAX_WBITS).decode() == scene.to_toml()
+    assert 'src="https://example.org/#v=' in scene.view("https://example.org/")._repr_html_()
+    with pytest.raises(sprung.Error, match="mesh"):
+        sprung.scene(ROOT / "examples/towel.toml").link()

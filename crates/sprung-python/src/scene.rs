@@ -91,6 +91,12 @@ impl Scene {
         self.scene.to_toml()
     }
 
+    /// Whether a body is made from a mesh: the text alone is then not all of it.
+    #[pyo3(name = "_has_meshes")]
+    fn has_meshes(&self) -> bool {
+        !self.scene.meshes().is_empty()
+    }
+
     /// Its text and its meshes.
     #[pyo3(name = "_pack")]
     fn pack<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
