@@ -154,8 +154,10 @@ fn levels_and_regions_give_the_same_bits_and_asking_changes_nothing() {
 }
 
 #[test]
-fn points_are_stopped_where_they_are_and_what_was_kept_stays() {
+fn points_are_stopped_half_a_step_back_and_what_was_kept_stays() {
     let parts = mixed(6, 36_000, false);
+    let dt = parts.params.dt;
+    let whole = |high: Vec3, low: Vec3| high.as_dvec3() + low.as_dvec3();
     for threads in [1, 2, 7] {
         let mut team = parts.divided_team(Level::best());
         for keeps in [true, false] {
@@ -165,9 +167,15 @@ fn points_are_stopped_where_they_are_and_what_was_kept_stays() {
             }
             let moving = parts.state_of(&team);
             let mut stopped = moving.clone();
+            for point in 0..stopped.position.len() {
+                let exact = whole(moving.position[point], moving.position_low[point])
+                    - 0.5 * dt * whole(moving.velocity[point], moving.velocity_low[point]);
+                stopped.position[point] = exact.as_vec3();
+                stopped.position_low[point] = (exact - stopped.position[point].as_dvec3()).as_vec3();
+            }
             stopped.velocity.fill(Vec3::ZERO);
             stopped.velocity_low.fill(Vec3::ZERO);
-            team.stop();
+            team.stop(dt);
             assert_eq!(first_difference(&stopped, &parts.state_of(&team)), None);
             if keeps {
                 let mut kept = moving.clone();
