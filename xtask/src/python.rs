@@ -92,6 +92,6 @@ fn pip(python: &Path, packages: &[&str]) -> Outcome {
 
 /// Without compiled files in the source tree.
 fn tidy(mut command: Command) -> Command {
-    command.env("PYTHONDONTWRITEBYTECODE", "1").env("MPLBACKEND", "Agg");
+    command.env("PYTHONDONTWRITEBYTECODE", "1");
     command
 }

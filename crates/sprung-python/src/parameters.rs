@@ -21,8 +21,8 @@ impl Simulation {
     }
 
     #[setter]
-    fn set_dt(&self, py: Python<'_>, dt: StepLength) -> PyResult<()> {
-        self.change_with(py, |inner| match dt.seconds()? {
+    fn set_dt(&self, py: Python<'_>, dt: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.change_with(py, |inner| match step_length(dt)? {
             Some(dt) => Ok(Change::Dt(dt)),
             None => tell::auto_dt(&inner.simulation).map(Change::Dt).map_err(raised),
         })
@@ -221,26 +221,15 @@ impl Simulation {
     }
 }
 
-/// How long a step is to be: a number, s, or "auto".
-#[derive(FromPyObject)]
-pub enum StepLength {
-    #[pyo3(transparent, annotation = "float")]
-    Seconds(f64),
-    #[pyo3(transparent, annotation = "str")]
-    Word(String),
-}
-
-impl StepLength {
-    /// Nothing for the largest that is safely stable.
-    pub fn seconds(&self) -> PyResult<Option<f64>> {
-        match self {
-            Self::Seconds(seconds) => Ok(Some(*seconds)),
-            Self::Word(word) if word == "auto" => Ok(None),
-            Self::Word(word) => {
-                let sentence = format!("is \"{word}\", and must be a number of seconds or \"auto\"");
-                Err(raised(Error::new(Code::WrongType, sentence).at_field("dt")))
-            }
+/// How long a step is to be: a number, s, or "auto", for which it gives nothing.
+pub fn step_length(given: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    match given.extract::<String>() {
+        Ok(word) if word == "auto" => Ok(None),
+        Ok(word) => {
+            let sentence = format!("is \"{word}\", and must be a number of seconds or \"auto\"");
+            Err(raised(Error::new(Code::WrongType, sentence).at_field("dt")))
         }
+        Err(_) => given.extract().map(Some),
     }
 }
 

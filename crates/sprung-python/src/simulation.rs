@@ -15,7 +15,7 @@ use sprung_render::{Motion, Quality, SceneView};
 
 use crate::errors::raised;
 use crate::model::Model;
-use crate::parameters::{StepLength, planes_from};
+use crate::parameters::{planes_from, step_length};
 use crate::scene::Scene;
 use crate::threads::{Lent, lend};
 use crate::{numbers, tell, views};
@@ -62,7 +62,7 @@ impl Simulation {
         source: Source,
         threads: Option<i64>,
         packed: Option<&[u8]>,
-        dt: Option<StepLength>,
+        dt: Option<&Bound<'_, PyAny>>,
         substeps: Option<u32>,
         gravity: Option<&Bound<'_, PyAny>>,
         planes: Option<Vec<Bound<'_, PyAny>>>,
@@ -85,7 +85,7 @@ impl Simulation {
             Source::Model(model) => {
                 let model = model.get();
                 let mut params = model.params.clone();
-                let dt = dt.map(|dt| dt.seconds()).transpose()?.flatten();
+                let dt = dt.map(step_length).transpose()?.flatten();
                 if let Some(substeps) = substeps {
                     params.substeps = substeps;
                 }

@@ -172,7 +172,7 @@ fn a_beam_of_three_fillings_sags_the_same() {
             );
             let scene = loaded(&text, &mesh).unwrap();
             let before = vertex(&scene.simulation().unwrap(), 16).y;
-            let simulation = settled(&scene, Some(1.5));
+            let simulation = settled(&scene, Some(0.3));
             f64::from(before - vertex(&simulation, 16).y)
         })
         .collect();

@@ -12,7 +12,7 @@ use sprung::{
 /// velocities become zero. Gives the steps.
 fn settle(params: &Params, simulation: &Simulation, state: &mut State, residual_force: f64) -> u64 {
     let stop = |state: &mut State| {
-        for point in 0..state.position.len() {
+        for point in (0..state.position.len()).filter(|&point| !params.is_fixed(point)) {
             let whole = |high: Vec3, low: Vec3| high.as_dvec3() + low.as_dvec3();
             let back = 0.5 * params.dt * whole(state.velocity[point], state.velocity_low[point]);
             let exact = whole(state.position[point], state.position_low[point]) - back;

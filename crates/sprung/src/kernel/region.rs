@@ -113,7 +113,7 @@ impl Region {
         }
     }
 
-    /// Stops every point of its own: each goes half a step of `dt` (s) back and has no velocity then.
+    /// Stops every point of its own: each that forces can move goes half a step of `dt` (s) back, and none has a velocity then.
     ///
     /// A step keeps, in a mode of squared frequency ω², not ½v² + ½ω²x² but ½v² + ½ω²x² − ½dt·ω²·x·v. At x − ½dt·v and at rest
     /// that is less by ½v²(1 − ¼ω²dt²), for every dt that is stable; at x it could be more, and a fast vibration would grow with
@@ -123,9 +123,10 @@ impl Region {
             (self.blocks.start - self.first_block) * BLOCK..(self.blocks.end - self.first_block) * BLOCK;
         let [x, y, z, u, v, w] = self.points.all_mut();
         let [x_low, y_low, z_low, u_low, v_low, w_low] = self.low.all_mut();
+        let [inverse_mass] = self.inverse_mass.all();
         let whole = |high: f32, low: f32| f64::from(high) + f64::from(low);
         for (x, x_low, v, v_low) in [(x, x_low, u, u_low), (y, y_low, v, v_low), (z, z_low, w, w_low)] {
-            for at in own.clone() {
+            for at in own.clone().filter(|&at| inverse_mass[at] > 0.0) {
                 let exact = whole(x[at], x_low[at]) - 0.5 * dt * whole(v[at], v_low[at]);
                 x[at] = exact as f32;
                 x_low[at] = (exact - f64::from(x[at])) as f32;

@@ -167,7 +167,8 @@ fn points_are_stopped_half_a_step_back_and_what_was_kept_stays() {
             }
             let moving = parts.state_of(&team);
             let mut stopped = moving.clone();
-            for point in 0..stopped.position.len() {
+            let free = |&point: &usize| !parts.params.is_fixed(point);
+            for point in (0..stopped.position.len()).filter(free) {
                 let exact = whole(moving.position[point], moving.position_low[point])
                     - 0.5 * dt * whole(moving.velocity[point], moving.velocity_low[point]);
                 stopped.position[point] = exact.as_vec3();
