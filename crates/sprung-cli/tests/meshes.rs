@@ -56,7 +56,7 @@ fn a_checkpoint_needs_no_mesh_file() {
         let checkpoint = folder.path().join("a.sprung");
         copied(name, "toml", folder.path());
         let mesh = copied(name, "obj", folder.path());
-        let endless = [&["run", &scene, "--frames", "1000000", "--quiet"][..], &outputs].concat();
+        let endless = [&["run", &scene, "--frames", "200000", "--quiet"][..], &outputs].concat();
         let mut child = command(folder.path(), &endless);
         let mut child = child.args(["--checkpoint", "a.sprung", "--every", "1000000"]).spawn().unwrap();
         while !checkpoint.exists() {
