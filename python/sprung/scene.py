@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 import os
-import re
 import warnings
-import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,8 +22,6 @@ __all__ = ["BuiltinScene", "Scene", "View", "from_mesh", "scene", "scenes"]
 
 #: Where ``cargo xtask web --serve`` serves the window.
 PAGE = "http://127.0.0.1:8080/"
-#: The longest link: every browser and most programs for messages take that.
-MOST_CHARACTERS = 32_000
 
 #: What a key of a scene may be set to.
 Value = float | str | bool | Sequence[float]
@@ -145,17 +140,7 @@ class Scene(_engine.Scene):
         >>> sprung.scene("jelly").link()[:44]
         'http://127.0.0.1:8080/#v=0.1.0&name=jelly&to'
         """
-        text = self.to_toml()
-        if self._has_meshes():
-            raise refusal("link", "cannot hold a mesh", code="unsupported", fix="send the scene's file and its meshes")
-        pack = zlib.compressobj(9, wbits=-zlib.MAX_WBITS)
-        packed = base64.urlsafe_b64encode(pack.compress(text.encode()) + pack.flush()).decode().rstrip("=")
-        name = re.sub("[^A-Za-z0-9_-]", "-", self.name)
-        link = f"v={_engine.__version__}&name={name}&toml={packed}"
-        if len(link) > MOST_CHARACTERS:
-            sentence = f"would have {len(link)} characters, and at most {MOST_CHARACTERS} are allowed"
-            raise refusal("link", sentence, code="too_large", fix="send the scene's file")
-        return f"{page}#{link}"
+        return f"{page}#{self._link()}"
 
     def view(self, page: str = PAGE, *, size: tuple[int, int] = (960, 600)) -> View:
         """The window in a notebook, to play and to pull at, where :meth:`link` leads: ``page`` must be served.

@@ -9,6 +9,7 @@ import sys
 import threading
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sprung
@@ -130,6 +131,19 @@ def test_nothing_leaks() -> None:
                 made.dt = -1
             except sprung.Error:
                 pass
+
+    cloud = sprung.Model(np.random.default_rng(1).random((100_000, 3)), 1.0).simulation(dt=0.01)
+
+    def winds(count: int) -> None:
+        for number in range(count):
+            cloud.external_forces = np.full((cloud.point_count, 3), 1.0 + number)
+            cloud.step()
+
+    winds(20)
+    before = resident()
+    winds(100)
+    # What was done is remembered as long as somebody could go back: a hundred winds would be 400 MB and more.
+    assert resident() - before < 100_000_000, f"winds: {resident() - before} bytes more"
 
     for work, count in ((steps, 100_000), (simulations, 10_000)):
         work(count // 10)

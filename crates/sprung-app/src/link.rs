@@ -10,13 +10,10 @@
 
 use std::fmt::Write;
 
-use base64::Engine;
-use base64::engine::general_purpose::URL_SAFE_NO_PAD as BASE64;
-use miniz_oxide::deflate::compress_to_vec;
-use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use sprung::scene::Scene;
 use sprung::{Code, Error, Result, Vec3};
 use sprung_driver::{Report, Source};
+use sprung_io::link as packing;
 use sprung_render::turntable::Turntable;
 
 use crate::files::{Origin, scene_text};
@@ -24,17 +21,8 @@ use crate::files::{Origin, scene_text};
 /// This program's version.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The most characters that a link is given: every browser and most programs for messages take them.
-const MOST_CHARACTERS: usize = 32_000;
-
 /// The most characters of a link that are looked at.
 const MOST_READ: usize = 1 << 20;
-
-/// The longest text of a scene that is unpacked, bytes.
-const MOST_TEXT: usize = 4 << 20;
-
-/// Effort in packing, from 0 to 10: a scene's text is short.
-const EFFORT: u8 = 10;
 
 /// A scene to open, and how to look at it.
 #[derive(Clone, Debug)]
@@ -63,25 +51,12 @@ pub fn link(report: &Report, view: &Turntable) -> Result<String> {
     let _ = if is_untouched {
         write!(link, "&scene={name}")
     } else {
-        if let Some(mesh) = mesh_of(&opened.scene) {
-            let sentence =
-                format!("cannot be a link: the scene has the mesh {mesh}, and a link holds no files");
-            return Err(
-                Error::new(Code::Unsupported, sentence).with_fix("send the scene's file and its meshes")
-            );
-        }
-        let packed = BASE64.encode(compress_to_vec(scene_text(report)?.as_bytes(), EFFORT));
-        write!(link, "&name={}&toml={packed}", plain(name))
+        packing::check_scene(&opened.scene)?;
+        write!(link, "&{}", packing::parts(name, &scene_text(report)?))
     };
     let Turntable { target: Vec3 { x, y, z }, distance, azimuth, elevation } = *view;
     let _ = write!(link, "&view={x},{y},{z},{distance},{azimuth},{elevation}");
-    if link.len() > MOST_CHARACTERS {
-        let sentence = format!(
-            "is too large for a link: that would have {} characters, and at most {MOST_CHARACTERS} are allowed",
-            link.len()
-        );
-        return Err(Error::new(Code::TooLarge, sentence).with_fix("save the scene and send the file"));
-    }
+    packing::check_length(&link)?;
     Ok(link)
 }
 
@@ -128,8 +103,8 @@ fn parsed(fragment: &str) -> Result<Link> {
             (Source { name: builtin.to_owned(), scene }, Origin::Builtin(builtin.to_owned()))
         }
         (None, Some(packed)) => {
-            let name = plain(name.unwrap_or("linked"));
-            let scene = Scene::parse(&unpacked(packed)?, &format!("{name}.toml"))?;
+            let name = packing::plain(name.unwrap_or("linked"));
+            let scene = Scene::parse(&packing::unpacked(packed)?, &format!("{name}.toml"))?;
             if let Some(mesh) = mesh_of(&scene) {
                 let sentence = format!("has the mesh {}, and a link holds no files", shortened(mesh));
                 return Err(Error::new(Code::Unsupported, sentence));
@@ -151,13 +126,6 @@ fn mesh_of(scene: &Scene) -> Option<&str> {
     scene.bodies.iter().find_map(|body| Some(body.mesh.as_ref()?.file.as_str()))
 }
 
-fn unpacked(packed: &str) -> Result<String> {
-    let damaged = || Error::new(Code::Unreadable, "is cut or changed: its scene cannot be unpacked");
-    let bytes = BASE64.decode(packed).map_err(|_| damaged())?;
-    let text = decompress_to_vec_with_limit(&bytes, MOST_TEXT).map_err(|_| damaged())?;
-    String::from_utf8(text).map_err(|_| damaged())
-}
-
 fn read_view(text: &str) -> Result<Turntable> {
     let numbers: Vec<f32> = text.split(',').filter_map(|number| number.parse().ok()).collect();
     let refused = || {
@@ -170,12 +138,6 @@ fn read_view(text: &str) -> Result<Turntable> {
     let [x, y, z, distance, azimuth, elevation] = numbers[..] else { return Err(refused()) };
     let view = Turntable { target: Vec3::new(x, y, z), distance, azimuth, elevation };
     if text.split(',').count() == 6 && view.is_sane() { Ok(view) } else { Err(refused()) }
-}
-
-/// A name in characters that an address leaves as they are.
-fn plain(name: &str) -> String {
-    let keep = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' };
-    name.chars().take(60).map(keep).collect()
 }
 
 /// What somebody else wrote, as far as one wants to read it.
@@ -242,8 +204,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_with_a_link_is_said() {
-        let toml = |text: &str| format!("toml={}", BASE64.encode(compress_to_vec(text.as_bytes(), EFFORT)));
-        let bomb = toml(&" ".repeat(MOST_TEXT + 1));
+        let bomb = packing::parts("bomb", &" ".repeat(packing::MOST_TEXT + 1));
         let cases: [(&str, &str); 12] = [
             ("v=1", "the link: has no scene"),
             ("scene=jelly&scene=chain", "the link: says scene twice"),
@@ -256,7 +217,7 @@ mod tests {
             ("toml=%%%", "the link: is cut or changed: its scene cannot be unpacked"),
             ("toml=AAAA", "the link: is cut or changed: its scene cannot be unpacked"),
             (&bomb, "the link: is cut or changed: its scene cannot be unpacked"),
-            (&format!("name=a/b&{}", toml("dt = -1")), "a-b.toml:1:6: dt: "),
+            (&packing::parts("a/b", "dt = -1"), "a-b.toml:1:6: dt: "),
             ("scene=jelly&view=1,2,3", "the link: has the view 1,2,3, which must be six numbers"),
             (
                 "scene=jelly&view=1,2,3,-4,0,0",

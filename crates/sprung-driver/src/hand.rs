@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use sprung::{Grab, Material, Model, ModelBuilder, Params, SAFE_SHARE, Vec3, stability};
+use sprung::{Code, Error, Grab, Material, Model, ModelBuilder, Params, Result, SAFE_SHARE, Vec3, stability};
 
 /// The slowest a point alone may swing at the hand's spring, Hz.
 const SLOWEST: f64 = 1.5;
@@ -66,12 +66,43 @@ impl Hand {
     }
 }
 
+/// A pull at a point: by a spring of the given stiffness (N/m) and damping (N·s/m), or else by the one that pulls at it already, or
+/// one that suits it.
+///
+/// # Errors
+/// [`Code::NotFound`] for a point that is not there, [`Code::Conflict`] for one that is fixed.
+///
+/// # Panics
+/// If the parts are not of one model.
+pub fn grab(
+    model: &Model,
+    params: &Params,
+    positions: &[Vec3],
+    point: usize,
+    target: Vec3,
+    [stiffness, damping]: [Option<f32>; 2],
+) -> Result<Grab> {
+    if point >= model.point_count() {
+        let sentence = format!("there is no point {point}; points are 0 to {}", model.point_count() - 1);
+        return Err(Error::new(Code::NotFound, sentence));
+    }
+    if params.is_anchored(point) {
+        let sentence = format!("{} is fixed, and a pull does not move it", model.point_name(point));
+        return Err(Error::new(Code::Conflict, sentence).with_fix("unpin it"));
+    }
+    let there = params.grabs.iter().find(|grab| grab.point == point);
+    let suits = there
+        .map_or_else(|| soft_spring(model, params, positions, point), |grab| (grab.stiffness, grab.damping));
+    let (stiffness, damping) = (stiffness.unwrap_or(suits.0), damping.unwrap_or(suits.1));
+    Ok(Grab { point, target, stiffness, damping })
+}
+
 /// Stiffness (N/m) and damping (N·s/m) of a soft hand at a point that can move: as stiff as all springs at the point
 /// together, as far as dt stays within the limit that it is within.
 ///
 /// # Panics
 /// If there is no such point, or if the parts are not of one model.
-pub fn soft_spring(model: &Model, params: &Params, positions: &[Vec3], point: usize) -> (f32, f32) {
+pub(crate) fn soft_spring(model: &Model, params: &Params, positions: &[Vec3], point: usize) -> (f32, f32) {
     let mass = f64::from(params.point_mass[point]);
     let springs = model.springs_at(point).iter().map(|&spring| spring as usize);
     let around: f64 = springs

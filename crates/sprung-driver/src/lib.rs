@@ -52,7 +52,7 @@ mod wire;
 
 pub use command::{Beginning, Command, Edit, Fix, Pace, Probe, Pull, Source};
 pub use driver::Driver;
-pub use hand::soft_spring;
+pub use hand::grab;
 pub use handle::Handle;
 pub use host::Host;
 pub use kept::{Kept, Running};

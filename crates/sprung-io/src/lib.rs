@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub mod export;
 pub mod files;
 pub mod import;
+pub mod link;
 mod pack;
 
 pub use export::{

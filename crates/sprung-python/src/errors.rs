@@ -55,16 +55,6 @@ fn add_blow_up(parts: &Bound<'_, PyDict>, blow_up: &BlowUp) -> PyResult<()> {
     parts.set_item("suggested_damping_scale", blow_up.suggested_damping_scale())
 }
 
-/// An error about a part of what `outer` names.
-pub fn within(outer: String, error: &Error) -> Error {
-    let field = match &error.place().field {
-        Some(inner) => format!("{outer}.{inner}"),
-        None => outer,
-    };
-    let told = Error::new(error.code(), error.sentence()).at_field(field);
-    error.fix().map(str::to_owned).into_iter().fold(told, Error::with_fix)
-}
-
 /// `OutOfRange` as `out_of_range`.
 fn snake_case(name: &str) -> String {
     let mut snake = String::new();

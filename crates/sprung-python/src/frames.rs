@@ -1,5 +1,6 @@
 //! Recorded frames: positions, velocities and energies over time, and every exporter.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -28,11 +29,8 @@ pub struct Recorder(Mutex<Content>);
 pub struct Frames(Content);
 
 struct Content {
-    scene: String,
-    title: String,
-    model: Arc<Model>,
-    /// From one frame to the next, s.
-    frame_time: f64,
+    /// What is recorded: the scene, the model, the time from one frame to the next.
+    info: RunInfo,
     /// Whether velocities are kept.
     keeps_velocities: bool,
     /// Of each frame: step, time (s), the energies (J), and the parameters, which frames share while they are the same.
@@ -66,21 +64,7 @@ impl Recorder {
                 "record fewer frames or leave out velocities; `sprung run` writes files as it goes",
             ))
         })?;
-        Ok(Self(Mutex::new(Content {
-            scene: info.scene,
-            title: info.title,
-            model: info.model,
-            frame_time,
-            keeps_velocities: velocities,
-            steps: Vec::new(),
-            times: Vec::new(),
-            energies: Vec::new(),
-            params: Vec::new(),
-            positions: Vec::new(),
-            velocities: Vec::new(),
-            suspect: 0,
-            snapshot: Snapshot::default(),
-        })))
+        Ok(Self(Mutex::new(Content::new(info, velocities))))
     }
 
     /// Takes the simulation as it is now.
@@ -95,8 +79,7 @@ impl Recorder {
     /// What was taken, but for what may belong to a blow-up if there was one; nothing is left here.
     fn finish(&self, py: Python<'_>, blew_up: bool) -> Frames {
         let mut content = self.lock(py);
-        let mut taken = content.empty();
-        std::mem::swap(&mut *content, &mut taken);
+        let mut taken = content.take_all();
         if blew_up {
             taken.drop_suspects();
         }
@@ -111,13 +94,10 @@ impl Recorder {
 }
 
 impl Content {
-    fn empty(&self) -> Self {
+    fn new(info: RunInfo, keeps_velocities: bool) -> Self {
         Self {
-            scene: self.scene.clone(),
-            title: self.title.clone(),
-            model: self.model.clone(),
-            frame_time: self.frame_time,
-            keeps_velocities: self.keeps_velocities,
+            info,
+            keeps_velocities,
             steps: Vec::new(),
             times: Vec::new(),
             energies: Vec::new(),
@@ -129,14 +109,26 @@ impl Content {
         }
     }
 
+    /// All frames so far; none are left here.
+    fn take_all(&mut self) -> Self {
+        let empty = Self::new(self.info.clone(), self.keeps_velocities);
+        std::mem::replace(self, empty)
+    }
+
     fn take(&mut self, simulation: &mut sprung::Simulation) {
         let is_suspect = simulation.is_suspect();
         self.suspect = if is_suspect { self.suspect + 1 } else { 0 };
         self.energies.push(tell::energy(&simulation.energy()));
-        let params = simulation.params();
+        // What acts from outside is in no file: frames of a wind that changes share the rest.
+        let params = Params {
+            external_forces: BTreeMap::new(),
+            carried: BTreeMap::new(),
+            grabs: Vec::new(),
+            ..simulation.params().clone()
+        };
         match self.params.last() {
-            Some(last) if **last == *params => self.params.push(last.clone()),
-            _ => self.params.push(Arc::new(params.clone())),
+            Some(last) if **last == params => self.params.push(last.clone()),
+            _ => self.params.push(Arc::new(params)),
         }
         simulation.fill(&mut self.snapshot);
         self.steps.push(self.snapshot.step);
@@ -150,7 +142,7 @@ impl Content {
     fn drop_suspects(&mut self) {
         // The first frame is how it began.
         let kept = (self.steps.len() - self.suspect.min(self.steps.len())).max(1).min(self.steps.len());
-        let points = self.model.point_count();
+        let points = self.info.model.point_count();
         self.steps.truncate(kept);
         self.times.truncate(kept);
         self.energies.truncate(kept);
@@ -161,7 +153,7 @@ impl Content {
     }
 
     fn frame(&self, index: usize, snapshot: &mut Snapshot) {
-        let points = self.model.point_count();
+        let points = self.info.model.point_count();
         let range = index * points..(index + 1) * points;
         snapshot.step = self.steps[index];
         snapshot.time = self.times[index];
@@ -202,12 +194,12 @@ impl Frames {
 
     #[getter]
     fn title(&self) -> &str {
-        &self.0.title
+        &self.0.info.title
     }
 
     #[getter]
     fn frame_time(&self) -> f64 {
-        self.0.frame_time
+        self.0.info.frame_time
     }
 
     #[getter]
@@ -243,8 +235,8 @@ impl Frames {
 
     /// The vertices of a surface in every frame, m.
     fn surface<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        let (points, frames) = (self.0.model.point_count(), self.0.steps.len());
-        let surface = &self.0.model.surfaces()[index];
+        let (points, frames) = (self.0.info.model.point_count(), self.0.steps.len());
+        let surface = &self.0.info.model.surfaces()[index];
         let vertices: Vec<f32> = match surface.weighted() {
             [] => bytemuck::cast_slice(&self.0.positions).to_vec(),
             carried => {
@@ -258,12 +250,8 @@ impl Frames {
         vertices.into_pyarray(py).reshape([frames, count, 3])
     }
 
-    #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
-    fn tell_bodies<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> Vec<(String, Bound<'py, pyo3::types::PySlice>, Bound<'py, pyo3::types::PySlice>)> {
-        tell::bodies(py, &self.0.model)
+    fn tell_bodies<'py>(&self, py: Python<'py>) -> Vec<tell::Body<'py>> {
+        tell::bodies(py, &self.0.info.model)
     }
 
     /// Writes them in the format that the file's ending asks for; gives the file's size in bytes.
@@ -328,12 +316,9 @@ impl Content {
     ) -> Result<u64> {
         let exporter = exporter_for(path)?;
         let info = RunInfo {
-            scene: self.scene.clone(),
-            title: self.title.clone(),
-            model: self.model.clone(),
             params: (*self.params[0]).clone(),
-            frame_time: self.frame_time,
             frames: self.steps.len() as u64,
+            ..self.info.clone()
         };
         let mut export = (exporter.open)(path, &info, options)?;
         let mut snapshot = Snapshot::default();
@@ -361,7 +346,8 @@ fn one_of<T: Copy>(field: &str, given: &str, allowed: &[(&str, T)]) -> PyResult<
 
 fn packed(content: &Content) -> Vec<u8> {
     let mut pack = Pack::new();
-    pack.text(&content.scene).text(&content.title).f64(content.frame_time);
+    let RunInfo { scene, title, frame_time, .. } = &content.info;
+    pack.text(scene).text(title).f64(*frame_time);
     pack.u8(content.keeps_velocities.into()).u64(content.steps.len() as u64);
     content.steps.iter().for_each(|&step| {
         pack.u64(step);
@@ -409,19 +395,10 @@ fn unpacked(model: Arc<Model>, bytes: &[u8]) -> Result<Content> {
     if !fits {
         return Err(Error::new(Code::Conflict, "the frames are not those of this model"));
     }
-    Ok(Content {
-        scene,
-        title,
-        model,
-        frame_time,
-        keeps_velocities,
-        steps,
-        times,
-        energies,
-        params,
-        positions,
-        velocities,
-        suspect: 0,
-        snapshot: Snapshot::default(),
-    })
+    let Some(first) = params.first() else {
+        return Err(Error::new(Code::Conflict, "there are no frames"));
+    };
+    let info = RunInfo { scene, title, model, params: (**first).clone(), frame_time, frames };
+    let content = Content::new(info, keeps_velocities);
+    Ok(Content { steps, times, energies, params, positions, velocities, ..content })
 }

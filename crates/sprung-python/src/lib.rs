@@ -8,6 +8,7 @@ mod frames;
 mod model;
 mod numbers;
 mod parameters;
+mod saving;
 mod scene;
 mod simulation;
 mod tell;
@@ -35,7 +36,7 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<frames::Frames>()?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
     module.add_function(wrap_pyfunction!(scene::toml_of, module)?)?;
-    module.add_function(wrap_pyfunction!(simulation::read_checkpoint, module)?)?;
+    module.add_function(wrap_pyfunction!(saving::read_checkpoint, module)?)?;
     module.add_function(wrap_pyfunction!(model::lattice, module)?)?;
     module.add_function(wrap_pyfunction!(model::lattice_side, module)?)?;
     module.add_function(wrap_pyfunction!(model::chain, module)?)?;

@@ -5,15 +5,14 @@ use std::sync::Arc;
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use sprung::build::{Lattice, Material, ModelBuilder, SpringKind, pairs_between, pairs_within};
+use sprung::build::{
+    Lattice, Material, ModelBuilder, SpringKind, estimated_bytes, pairs_between, pairs_within,
+};
 use sprung::scene::MAX_POINTS;
 use sprung::{Code, DVec3, Error, Params, Result, State, SurfaceKind, Vec3};
 
-use crate::errors::{raised, within};
+use crate::errors::raised;
 use crate::numbers;
-
-/// Memory of a point and of a spring while they are built and simulated, bytes.
-const BYTES: [u64; 2] = [420, 150];
 
 /// A model with the parameters and the state that it begins with. It never changes.
 #[pyclass(frozen, subclass, module = "sprung._engine")]
@@ -110,8 +109,7 @@ impl Arrays {
             let sentence = format!("have {together} points together, and there are {points}");
             return Err(Error::new(Code::Conflict, sentence).at_field("bodies"));
         }
-        let bytes = points as u64 * BYTES[0] + self.springs.len() as u64 * BYTES[1];
-        sprung_cli::memory::check(bytes, "the model")?;
+        sprung_cli::memory::check(estimated_bytes(points as u64, self.springs.len() as u64), "the model")?;
         let mut builder = ModelBuilder::new();
         builder.allow_springs(self.springs.len());
         builder.reserve(points, self.springs.len());
@@ -121,7 +119,7 @@ impl Arrays {
             let first = builder.point_count();
             for point in first..first + count {
                 let added = builder.add_point(self.positions[point], self.mass[point]);
-                added.map_err(|error| within(format!("points[{point}]"), &error))?;
+                added.map_err(|error| error.within(format!("points[{point}]")))?;
             }
             let body = first..first + count;
             while next < self.springs.len() && self.springs[next].iter().all(|end| body.contains(end)) {
@@ -140,7 +138,7 @@ impl Arrays {
         }
         for (point, &velocity) in self.velocities.iter().flatten().enumerate() {
             let set = builder.set_velocity(point, velocity);
-            set.map_err(|error| within(format!("velocities[{point}]"), &error))?;
+            set.map_err(|error| error.within(format!("velocities[{point}]")))?;
         }
         builder.build()
     }
@@ -154,7 +152,7 @@ impl Arrays {
                 .as_ref()
                 .map_or(Ok(()), |lengths| builder.set_rest_length(spring, lengths[index]))
         };
-        add().map_err(|error| within(format!("springs[{index}]"), &error))
+        add().map_err(|error| error.within(format!("springs[{index}]")))
     }
 
     /// The triangles whose first corner is one of the body's points: a skin if they are closed, cloth if not.
@@ -190,6 +188,8 @@ fn is_closed(triangles: &[[u32; 3]]) -> bool {
 
 type Positions<'py> = Bound<'py, PyArray2<f64>>;
 type Pairs<'py> = Bound<'py, PyArray2<u32>>;
+/// Positions, the three kinds of springs, triangles, and the names of sides.
+type Shape<'py> = (Positions<'py>, [Pairs<'py>; 3], Pairs<'py>, Vec<String>);
 
 fn table<'py, T: numpy::Element + Copy, const N: usize>(
     py: Python<'py>,
@@ -201,13 +201,12 @@ fn table<'py, T: numpy::Element + Copy, const N: usize>(
 
 /// Positions (m), structural, shear and bend springs, and triangles of a lattice.
 #[pyfunction]
-#[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
 pub fn lattice<'py>(
     py: Python<'py>,
     counts: [i64; 3],
     spacing: f64,
     origin: &Bound<'py, PyAny>,
-) -> PyResult<(Positions<'py>, [Pairs<'py>; 3], Pairs<'py>, Vec<String>)> {
+) -> PyResult<Shape<'py>> {
     let origin = DVec3::from_array(numbers::vector("origin", origin)?);
     let lattice = checked(counts, spacing).map_err(raised)?;
     parts(py, &lattice, origin)
@@ -230,13 +229,12 @@ pub fn lattice_side<'py>(
 
 /// The same of points in a row.
 #[pyfunction]
-#[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
 pub fn chain<'py>(
     py: Python<'py>,
     points: i64,
     step: &Bound<'py, PyAny>,
     origin: &Bound<'py, PyAny>,
-) -> PyResult<(Positions<'py>, [Pairs<'py>; 3], Pairs<'py>, Vec<String>)> {
+) -> PyResult<Shape<'py>> {
     let step = DVec3::from_array(numbers::vector("step", step)?);
     let origin = DVec3::from_array(numbers::vector("origin", origin)?);
     if !(step.is_finite() && step != DVec3::ZERO) {
@@ -247,12 +245,7 @@ pub fn chain<'py>(
     parts(py, &Lattice::chain(points, step), origin)
 }
 
-#[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
-fn parts<'py>(
-    py: Python<'py>,
-    lattice: &Lattice,
-    origin: DVec3,
-) -> PyResult<(Positions<'py>, [Pairs<'py>; 3], Pairs<'py>, Vec<String>)> {
+fn parts<'py>(py: Python<'py>, lattice: &Lattice, origin: DVec3) -> PyResult<Shape<'py>> {
     let positions = table(py, lattice.positions().map(|place| (origin + place).to_array()).collect())?;
     let pairs = |kind| table(py, lattice.pairs(kind).collect());
     let kinds = [pairs(SpringKind::Structural)?, pairs(SpringKind::Shear)?, pairs(SpringKind::Bend)?];

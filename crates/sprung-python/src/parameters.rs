@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use sprung::{Change, Code, ContactLaw, DVec3, Error, Grab, Params, Plane, Vec3};
-use sprung_driver::soft_spring;
+use sprung::{Change, Code, ContactLaw, DVec3, Error, Params, Plane, Vec3};
+use sprung_driver::grab;
 
-use crate::errors::{raised, within};
+use crate::errors::raised;
 use crate::simulation::{Inner, Simulation};
 use crate::{numbers, tell, views};
 
@@ -54,9 +54,8 @@ impl Simulation {
         self.change(py, Change::Gravity(numbers::vec3("gravity", gravity)?))
     }
 
-    #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
     #[pyo3(name = "_tell_planes")]
-    fn tell_planes(&self, py: Python<'_>) -> Vec<(tell::Vector, tell::Vector, f32, f32, &'static str)> {
+    fn tell_planes(&self, py: Python<'_>) -> Vec<tell::Ground> {
         self.lock(py).simulation.params().planes.iter().map(tell::plane).collect()
     }
 
@@ -186,7 +185,11 @@ impl Simulation {
         damping: Option<f32>,
     ) -> PyResult<()> {
         let (point, target) = (numbers::point("drag", point, self.points)?, numbers::vec3("drag", target)?);
-        self.change_with(py, |inner| inner.grab(point, target, stiffness, damping).map(Change::Grab))
+        self.change_with(py, |Inner { simulation, .. }| {
+            let (model, params) = (simulation.model(), simulation.params());
+            let made = grab(model, params, &simulation.state().position, point, target, [stiffness, damping]);
+            made.map(Change::Grab).map_err(|error| raised(error.at_field("drag")))
+        })
     }
 
     /// Lets a point go that was dragged or carried.
@@ -233,28 +236,6 @@ pub fn step_length(given: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
     }
 }
 
-impl Inner {
-    fn grab(
-        &self,
-        point: usize,
-        target: Vec3,
-        stiffness: Option<f32>,
-        damping: Option<f32>,
-    ) -> PyResult<Grab> {
-        let (model, params) = (self.simulation.model(), self.simulation.params());
-        if params.is_anchored(point) {
-            let sentence = format!("{} is fixed, and a pull does not move it", model.point_name(point));
-            return Err(raised(Error::new(Code::Conflict, sentence).at_field("drag").with_fix("unpin it")));
-        }
-        let (soft_stiffness, soft_damping) = match params.grabs.iter().find(|grab| grab.point == point) {
-            Some(grab) => (grab.stiffness, grab.damping),
-            None => soft_spring(model, params, &self.simulation.state().position, point),
-        };
-        let (stiffness, damping) = (stiffness.unwrap_or(soft_stiffness), damping.unwrap_or(soft_damping));
-        Ok(Grab { point, target, stiffness, damping })
-    }
-}
-
 /// Planes from objects with `point`, `normal`, `stiffness`, `damping` and `law`. A normal may have any length but zero.
 pub fn planes_from(planes: &[Bound<'_, PyAny>]) -> PyResult<Vec<Plane>> {
     planes.iter().enumerate().map(|(index, plane)| plane_from(index, plane)).collect()
@@ -264,12 +245,6 @@ fn plane_from(index: usize, plane: &Bound<'_, PyAny>) -> PyResult<Plane> {
     let field = |name: &str| format!("planes[{index}].{name}");
     let point = numbers::vec3(&field("point"), &plane.getattr("point")?)?;
     let normal = DVec3::from_array(numbers::vector(&field("normal"), &plane.getattr("normal")?)?);
-    // Brought to a sensible length first, so that squaring it neither overflows nor vanishes.
-    let largest = normal.abs().max_element();
-    if !(normal.is_finite() && largest > 0.0) {
-        let sentence = format!("is {normal}, and must be finite and not zero");
-        return Err(raised(Error::new(Code::OutOfRange, sentence).at_field(field("normal"))));
-    }
     let law: String = plane.getattr("law")?.extract()?;
     let law = match law.as_str() {
         "push" => ContactLaw::Push,
@@ -279,13 +254,7 @@ fn plane_from(index: usize, plane: &Bound<'_, PyAny>) -> PyResult<Plane> {
             return Err(raised(Error::new(Code::OutOfRange, sentence).at_field(field("law"))));
         }
     };
-    let plane = Plane {
-        point,
-        normal: (normal / largest).normalize().as_vec3(),
-        stiffness: plane.getattr("stiffness")?.extract()?,
-        damping: plane.getattr("damping")?.extract()?,
-        law,
-    };
-    plane.validate().map_err(|error| raised(within(format!("planes[{index}]"), &error)))?;
-    Ok(plane)
+    let number = |name: &str| plane.getattr(name)?.extract::<f32>();
+    let made = Plane::new(point, normal, number("stiffness")?, number("damping")?, law);
+    made.map_err(|error| raised(error.within(format!("planes[{index}]"))))
 }

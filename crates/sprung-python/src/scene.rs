@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sprung::scene::{self as scenes, BUILTIN, Kind};
 use sprung::{Code, Error, Result};
-use sprung_io::{Pack, Unpack, files, import};
+use sprung_io::{Pack, Unpack, files, import, link};
 
 use crate::errors::raised;
 
@@ -91,10 +91,16 @@ impl Scene {
         self.scene.to_toml()
     }
 
-    /// Whether a body is made from a mesh: the text alone is then not all of it.
-    #[pyo3(name = "_has_meshes")]
-    fn has_meshes(&self) -> bool {
-        !self.scene.meshes().is_empty()
+    /// As a link has it behind the `#`.
+    #[pyo3(name = "_link")]
+    fn link(&self) -> PyResult<String> {
+        let made = || {
+            link::check_scene(&self.scene)?;
+            let version = env!("CARGO_PKG_VERSION");
+            let made = format!("v={version}&{}", link::parts(&self.name, &self.scene.to_toml()));
+            link::check_length(&made).map(|()| made)
+        };
+        made().map_err(raised)
     }
 
     /// Its text and its meshes.

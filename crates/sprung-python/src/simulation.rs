@@ -1,30 +1,23 @@
 //! A simulation as Python holds it.
 
-use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use pyo3::types::{PyBytes, PyDict, PySlice};
+use pyo3::types::{PyDict, PySlice};
 use sprung::{Code, Error, Result, SettleOptions};
-use sprung_io::checkpoint::{self, Saved, Stored};
-use sprung_io::{Pack, PartialFile, RunInfo};
-use sprung_render::export::write_png;
-use sprung_render::{Motion, Quality, SceneView};
+use sprung_io::RunInfo;
 
 use crate::errors::raised;
 use crate::model::Model;
 use crate::parameters::{planes_from, step_length};
 use crate::scene::Scene;
 use crate::threads::{Lent, lend};
-use crate::{numbers, tell, views};
+use crate::{numbers, saving, tell, views};
 
 /// Springs and points that are stepped over between two looks whether somebody pressed Ctrl-C: some hundredths of a second.
 const WORK_BETWEEN_LOOKS: u64 = 1 << 24;
-
-/// Entries of the log after which it is begun anew: nobody can go back here, and a learner may push at points for hours.
-const LONGEST_LOG: usize = 1024;
 
 /// A simulation. Any thread may use it; one after another.
 #[pyclass(frozen, subclass, module = "sprung._engine")]
@@ -39,10 +32,13 @@ pub struct Inner {
     current: views::Current,
     lent: Lent,
     /// Where it is from, and what it is called: what checkpoints and exports want to know.
-    scene: Option<sprung::scene::Scene>,
-    name: String,
+    pub scene: Option<sprung::scene::Scene>,
+    pub name: String,
     title: String,
 }
+
+type Vertices<'py> = Bound<'py, PyArray2<f32>>;
+type Triangles<'py> = Bound<'py, PyArray2<u32>>;
 
 /// What a simulation is made of.
 #[derive(FromPyObject)]
@@ -78,7 +74,7 @@ impl Simulation {
             Source::Scene(scene) => {
                 let scene = scene.get();
                 py.detach(|| match packed {
-                    Some(bytes) => unpacked(bytes)?.simulation(scene.scene.build()?.0),
+                    Some(bytes) => saving::unpacked(bytes)?.simulation(scene.scene.build()?.0),
                     None => scene.simulation(),
                 })
             }
@@ -96,7 +92,7 @@ impl Simulation {
                     params.planes = planes_from(&planes)?;
                 }
                 py.detach(|| match packed {
-                    Some(bytes) => unpacked(bytes)?.simulation(model.model.clone()),
+                    Some(bytes) => saving::unpacked(bytes)?.simulation(model.model.clone()),
                     None => {
                         params.dt = match dt {
                             Some(dt) => dt,
@@ -257,9 +253,8 @@ impl Simulation {
         Ok(array)
     }
 
-    #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
     #[pyo3(name = "_tell_bodies")]
-    fn tell_bodies<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PySlice>, Bound<'py, PySlice>)> {
+    fn tell_bodies<'py>(&self, py: Python<'py>) -> Vec<tell::Body<'py>> {
         tell::bodies(py, self.lock(py).simulation.model())
     }
 
@@ -275,13 +270,8 @@ impl Simulation {
     }
 
     /// Vertices (m) and triangles of a surface now: points, or an artist's mesh that they carry along.
-    #[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
     #[pyo3(name = "_surface")]
-    fn surface<'py>(
-        &self,
-        py: Python<'py>,
-        index: usize,
-    ) -> PyResult<(Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<u32>>)> {
+    fn surface<'py>(&self, py: Python<'py>, index: usize) -> PyResult<(Vertices<'py>, Triangles<'py>)> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;
         let model = inner.simulation.model().clone();
@@ -325,70 +315,13 @@ impl Simulation {
 
     /// The certified limit alone, as quickly as three steps.
     #[pyo3(name = "_quick_limit")]
-    fn quick_limit(&self, py: Python<'_>) -> PyResult<(f64, String, Option<usize>, Vec<usize>)> {
+    fn quick_limit(&self, py: Python<'_>) -> PyResult<tell::Told> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;
         inner.renew_threads()?;
         let limit = py.detach(|| inner.simulation.certified_limit());
         Ok(tell::limit(&inner.simulation, limit))
     }
-
-    /// A picture of it now, of so many pixels, as the bytes of a PNG.
-    fn picture<'py>(&self, py: Python<'py>, width: u32, height: u32) -> PyResult<Bound<'py, PyBytes>> {
-        let mut guard = self.lock(py);
-        let inner = &mut *guard;
-        let picture = py.detach(|| inner.picture([width, height])).map_err(raised)?;
-        Ok(PyBytes::new(py, &picture))
-    }
-
-    /// All of it but where it came from, as bytes.
-    #[pyo3(name = "_pack")]
-    fn pack<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let mut guard = self.lock(py);
-        let inner = &mut *guard;
-        let bytes = py.detach(|| packed(&inner.saved())).map_err(raised)?;
-        Ok(PyBytes::new(py, &bytes))
-    }
-
-    /// Writes a checkpoint.
-    #[pyo3(name = "_save_checkpoint")]
-    fn save_checkpoint(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let mut guard = self.lock(py);
-        let inner = &mut *guard;
-        py.detach(|| inner.save(&path)).map_err(raised)
-    }
-}
-
-/// Of a checkpoint: the name of its scene, the scene as [`Scene`] packs it, and the simulation as [`Simulation`] does.
-#[pyfunction]
-pub fn read_checkpoint<'py>(
-    py: Python<'py>,
-    path: PathBuf,
-) -> PyResult<(String, Bound<'py, PyBytes>, Bound<'py, PyBytes>)> {
-    let read = || -> Result<(String, Vec<u8>, Vec<u8>)> {
-        let saved = Stored::open(&path)?.read(&sprung_cli::memory::check)?;
-        // Looked over here, where the file's name is at hand.
-        let resumed = saved.resume(&sprung_cli::memory::check);
-        resumed.map_err(|error| error.in_file(path.display().to_string()))?;
-        let mut scene = Pack::new();
-        scene.text(&saved.scene).meshes(&saved.meshes);
-        Ok((saved.scene_name.clone(), scene.into_bytes(), packed(&saved)?))
-    };
-    let (name, scene, simulation) = py.detach(read).map_err(raised)?;
-    Ok((name, PyBytes::new(py, &scene), PyBytes::new(py, &simulation)))
-}
-
-/// What is saved, as bytes.
-fn packed(saved: &Saved) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let written = saved.write_to(&mut bytes);
-    written.map_err(|error| Error::new(Code::TooLarge, format!("cannot be packed: {error}")))?;
-    Ok(bytes)
-}
-
-/// The same the other way round.
-fn unpacked(bytes: &[u8]) -> Result<Saved> {
-    Saved::read_from(&mut &*bytes, bytes.len() as u64)
 }
 
 impl Simulation {
@@ -434,11 +367,7 @@ impl Simulation {
 impl Inner {
     fn steps(&mut self, count: u64) -> Result<()> {
         self.simulation.steps(count)?;
-        // Nothing has been done at this step yet, and if no energy came from nowhere, then this is a good state: it may be
-        // the first of a new log.
-        if self.simulation.log().len() > LONGEST_LOG && !self.simulation.is_suspect() {
-            self.simulation.keep_history(0);
-        }
+        self.simulation.forget_long_log();
         Ok(())
     }
 
@@ -485,66 +414,5 @@ impl Inner {
             frame_time,
             frames,
         }
-    }
-
-    fn saved(&mut self) -> Saved {
-        let checkpoint = self.simulation.checkpoint();
-        match &self.scene {
-            Some(scene) => Saved::of(&self.name, scene, self.simulation.model(), checkpoint),
-            None => Saved {
-                program: env!("CARGO_PKG_VERSION").to_owned(),
-                scene_name: self.name.clone(),
-                scene: String::new(),
-                meshes: Vec::new(),
-                fingerprint: self.simulation.model().fingerprint(),
-                checkpoint,
-                recording: None,
-            },
-        }
-    }
-
-    fn save(&mut self, path: &Path) -> Result<()> {
-        let named = |error: Error| error.in_file(path.display().to_string());
-        if self.scene.is_none() {
-            let sentence = "a checkpoint holds a scene, and this simulation is of a model made of arrays";
-            return Err(named(Error::new(Code::Unsupported, sentence).with_fix("use pickle")));
-        }
-        if !checkpoint::is_name(path) {
-            return Err(named(Error::new(
-                Code::Unsupported,
-                "is no name for a checkpoint; they end in .sprung",
-            )));
-        }
-        let mut file = PartialFile::create(path)?;
-        let saved = self.saved();
-        let failed = |error: std::io::Error| sprung_io::files::write_error(path, &error);
-        saved.write_to(&mut file).map_err(failed)?;
-        file.finish().map(|_| ())
-    }
-
-    fn picture(&mut self, size: [u32; 2]) -> Result<Vec<u8>> {
-        let range = sprung_render::export::SIZE_RANGE;
-        if !size.iter().all(|side| range.contains(side)) {
-            let sentence = format!(
-                "is {}x{}, and width and height must be from {} to {} pixels",
-                size[0],
-                size[1],
-                range.start(),
-                range.end()
-            );
-            return Err(Error::new(Code::OutOfRange, sentence).at_field("size"));
-        }
-        let info = self.info(self.simulation.params().dt, 1);
-        let (_, time) = self.simulation.now();
-        let positions = &self.simulation.snapshot().positions;
-        let mut motion = Motion::new(&info, size);
-        motion.include(&info.model, &info.params, positions);
-        let view = SceneView::new(&info, &motion, Quality::Still);
-        let image = view.picture(&info.params, time, positions);
-        let mut bytes = Vec::new();
-        write_png(&mut bytes, &image).map_err(|error| {
-            Error::new(Code::Unwritable, format!("the picture cannot be packed: {error}"))
-        })?;
-        Ok(bytes)
     }
 }

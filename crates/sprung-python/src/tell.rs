@@ -31,12 +31,11 @@ fn slice<'py>(py: Python<'py>, range: &std::ops::Range<usize>) -> Bound<'py, PyS
     PySlice::new(py, range.start as isize, range.end as isize, 1)
 }
 
-/// Name, points and springs of every body.
-#[allow(clippy::type_complexity, reason = "a tuple for our own Python")]
-pub fn bodies<'py>(
-    py: Python<'py>,
-    model: &Model,
-) -> Vec<(String, Bound<'py, PySlice>, Bound<'py, PySlice>)> {
+/// Name, points and springs of a body.
+pub type Body<'py> = (String, Bound<'py, PySlice>, Bound<'py, PySlice>);
+
+/// What every body is.
+pub fn bodies<'py>(py: Python<'py>, model: &Model) -> Vec<Body<'py>> {
     let body = |body: &sprung::Body| (body.name.clone(), slice(py, &body.points), slice(py, &body.springs));
     model.bodies().iter().map(body).collect()
 }
@@ -72,8 +71,11 @@ pub fn stability<'py>(py: Python<'py>, simulation: &Simulation) -> PyResult<Boun
     Ok(told)
 }
 
-/// A limit, what sets it in words, its spring, and its points; one that does not exist is infinite.
-pub fn limit(simulation: &Simulation, limit: Option<Limit>) -> (f64, String, Option<usize>, Vec<usize>) {
+/// A limit, s, what sets it in words, its spring, and its points.
+pub type Told = (f64, String, Option<usize>, Vec<usize>);
+
+/// A limit; one that does not exist is infinite.
+pub fn limit(simulation: &Simulation, limit: Option<Limit>) -> Told {
     let model = simulation.model();
     let Some(limit) = limit else { return (f64::INFINITY, "nothing".to_owned(), None, Vec::new()) };
     match limit.setter {
@@ -88,11 +90,13 @@ pub fn limit(simulation: &Simulation, limit: Option<Limit>) -> (f64, String, Opt
     }
 }
 
-/// As a tuple of Python's.
-pub type Vector = (f32, f32, f32);
+type Vector = (f32, f32, f32);
 
 /// Point, normal, stiffness, damping and law of a plane.
-pub fn plane(plane: &Plane) -> (Vector, Vector, f32, f32, &'static str) {
+pub type Ground = (Vector, Vector, f32, f32, &'static str);
+
+/// What a plane is.
+pub fn plane(plane: &Plane) -> Ground {
     let law = match plane.law {
         ContactLaw::Push => "push",
         ContactLaw::Report => "report",

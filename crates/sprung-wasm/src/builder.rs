@@ -1,7 +1,7 @@
 //! Points and springs in code: the engine's builder, with lattices that know their sides.
 
 use js_sys::Uint32Array;
-use sprung::build::{Lattice, Material, ModelBuilder, SpringKind};
+use sprung::build::{Lattice, Material, ModelBuilder, SpringKind, estimated_bytes};
 use sprung::scene::MAX_POINTS;
 use sprung::stability;
 use sprung::{Code, DVec3, Error, Result, Simulation, SurfaceKind};
@@ -10,9 +10,6 @@ use wasm_bindgen::prelude::*;
 use crate::javascript::{Thrown, index, room_for, thrown, vector, whole};
 use crate::simulation::EngineSimulation;
 use crate::tell;
-
-/// Memory of a point while it is built and simulated, bytes.
-const POINT_BYTES: u64 = 420;
 
 /// Collects points and springs.
 #[wasm_bindgen]
@@ -238,7 +235,7 @@ impl EngineBuilder {
             }),
         };
         let first = self.builder.point_count();
-        room_for(places.len() as u64 * POINT_BYTES, "the model")?;
+        room_for(estimated_bytes(places.len() as u64, 0), "the model")?;
         for (point, &place) in places.iter().enumerate() {
             self.builder.add_point(DVec3::from_array(place).as_vec3(), mass(point)? as f32)?;
         }
@@ -251,7 +248,7 @@ impl EngineBuilder {
             let sentence = format!("makes {count} points, and there may be at most {MAX_POINTS}");
             return Err(Error::new(Code::TooLarge, sentence).at_field("points"));
         }
-        room_for(count * POINT_BYTES, "the model")?;
+        room_for(estimated_bytes(count, 0), "the model")?;
         let (first, origin) = (self.builder.point_count(), DVec3::from_slice(origin));
         for place in lattice.positions() {
             self.builder.add_point((origin + place).as_vec3(), mass as f32)?;

@@ -3,15 +3,12 @@
 use js_sys::{Array, Float32Array, Uint32Array};
 use sprung::scene::Scene;
 use sprung::{Change, Code, Error, Grab, Result, SettleOptions, Simulation, Snapshot};
-use sprung_driver::soft_spring;
+use sprung_driver::grab;
 use wasm_bindgen::prelude::*;
 
 use crate::javascript::{Fields, Thrown, index, room_for, thrown, vector, whole};
 use crate::pick::{Ray, Target, pick};
 use crate::tell;
-
-/// Entries of the log after which it is begun anew: nobody can go back here, and a page may pull at a point for hours.
-const LONGEST_LOG: usize = 1024;
 
 /// A simulation, its snapshot, and the part of a step that is still due.
 #[wasm_bindgen]
@@ -324,11 +321,7 @@ impl EngineSimulation {
             return Ok(());
         }
         self.simulation.steps(count)?;
-        // Nothing has been done at this step yet, and if no energy came from nowhere, then this is a good state: it may be
-        // the first of a new log.
-        if self.simulation.log().len() > LONGEST_LOG && !self.simulation.is_suspect() {
-            self.simulation.keep_history(0);
-        }
+        self.simulation.forget_long_log();
         Ok(())
     }
 
@@ -340,20 +333,10 @@ impl EngineSimulation {
     fn grab(&mut self, point: f64, spring: Option<&[f32]>) -> Result<Grab> {
         let point = index("drag", point)?;
         let (model, params) = (self.simulation.model(), self.simulation.params());
-        if point >= model.point_count() {
-            let sentence = format!("there is no point {point}; points are 0 to {}", model.point_count() - 1);
-            return Err(Error::new(Code::NotFound, sentence).at_field("drag"));
-        }
-        if params.is_anchored(point) {
-            let sentence = format!("{} is fixed, and a pull does not move it", model.point_name(point));
-            return Err(Error::new(Code::Conflict, sentence).at_field("drag").with_fix("unpin it"));
-        }
-        let (stiffness, damping) = match (spring, params.grabs.iter().find(|grab| grab.point == point)) {
-            (Some(&[stiffness, damping]), _) => (stiffness, damping),
-            (_, Some(grab)) => (grab.stiffness, grab.damping),
-            _ => soft_spring(model, params, &self.simulation.state().position, point),
-        };
-        Ok(Grab { point, target: sprung::Vec3::ZERO, stiffness, damping })
+        let spring = [0, 1].map(|at| spring.and_then(|spring| spring.get(at).copied()));
+        let positions = &self.simulation.state().position;
+        let made = grab(model, params, positions, point, sprung::Vec3::ZERO, spring);
+        made.map_err(|error| error.at_field("drag"))
     }
 
     fn fill(&mut self) {

@@ -190,21 +190,10 @@ fn plane(plane: &Plane) -> JsValue {
 /// Planes from nine numbers each. A normal may have any length but zero.
 pub fn planes_from(numbers: &[f64]) -> Result<Vec<Plane>> {
     let plane = |(number, values): (usize, &[f64])| {
-        let normal = DVec3::from_slice(&values[3..6]);
-        // Brought to a sensible length first, so that squaring it neither overflows nor vanishes.
-        let largest = normal.abs().max_element();
-        if !(normal.is_finite() && largest > 0.0) {
-            let sentence = format!("is {normal}, and must be finite and not zero");
-            let field = format!("planes[{number}].normal");
-            return Err(Error::new(Code::OutOfRange, sentence).at_field(field));
-        }
-        Ok(Plane {
-            point: DVec3::from_slice(&values[..3]).as_vec3(),
-            normal: (normal / largest).normalize().as_vec3(),
-            stiffness: values[6] as f32,
-            damping: values[7] as f32,
-            law: if values[8] == 1.0 { ContactLaw::Report } else { ContactLaw::Push },
-        })
+        let law = if values[8] == 1.0 { ContactLaw::Report } else { ContactLaw::Push };
+        let [point, normal] = [&values[..3], &values[3..6]].map(DVec3::from_slice);
+        let made = Plane::new(point.as_vec3(), normal, values[6] as f32, values[7] as f32, law);
+        made.map_err(|error| error.within(format!("planes[{number}]")))
     };
     numbers.chunks_exact(PLANE_NUMBERS).enumerate().map(plane).collect()
 }

@@ -121,6 +121,16 @@ impl Error {
         self
     }
 
+    /// Says that what it is about is a part of `outer`: `damping` becomes `planes[1].damping`.
+    pub fn within(mut self, outer: impl Into<String>) -> Self {
+        let outer = outer.into();
+        self.0.place.field = Some(match self.0.place.field.take() {
+            Some(inner) => format!("{outer}.{inner}"),
+            None => outer,
+        });
+        self
+    }
+
     /// Names the file or argument, unless an inner place named one already.
     pub fn in_file(mut self, file: impl Into<String>) -> Self {
         self.0.place.file.get_or_insert_with(|| file.into());

@@ -69,6 +69,10 @@ pub(crate) fn replaces(new: &Change, old: &Change) -> bool {
     }
 }
 
+/// A log of more events, or of more memory (bytes), is long.
+const LONG_LOG: usize = 1024;
+const LARGE_LOG: usize = 16 << 20;
+
 /// A run: a first state, what was done to it and when, and some states on the way.
 ///
 /// A checkpoint at step s is the state on arriving there, before the events logged for s. They are shared by clones.
@@ -152,6 +156,11 @@ impl History {
         if let Some((_, event)) = self.log.pop() {
             self.log_bytes -= self.bytes_of(&event);
         }
+    }
+
+    /// Whether the log has grown beyond what is worth keeping where nobody goes back.
+    pub fn log_is_long(&self) -> bool {
+        self.log.len() > LONG_LOG || self.log_bytes > LARGE_LOG
     }
 
     /// Memory of an event that comes last in the log, bytes.

@@ -161,7 +161,7 @@ impl Params {
             && self.carried.keys().eq(other.carried.keys())
     }
 
-    /// Memory of the long arrays that are not shared with `other`, bytes.
+    /// Memory of what is not shared with `other`, bytes: long arrays, and forces and hands, which never are.
     pub(crate) fn bytes_apart_from(&self, other: &Self) -> usize {
         fn bytes<T>(mine: &Arc<Vec<T>>, theirs: &Arc<Vec<T>>) -> usize {
             if Arc::ptr_eq(mine, theirs) { 0 } else { size_of::<T>() * mine.len() }
@@ -172,6 +172,7 @@ impl Params {
             + bytes(&self.spring_damping, &other.spring_damping)
             + bytes(&self.spring_rest_length, &other.spring_rest_length)
             + bytes(&self.spring_cut, &other.spring_cut)
+            + 2 * size_of::<(usize, Vec3)>() * (self.external_forces.len() + self.carried.len())
     }
 
     /// Checks every value against its range and every array against the model.

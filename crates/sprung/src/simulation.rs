@@ -272,6 +272,15 @@ impl Simulation {
         self.watch.restart(&mut self.current, &self.params, 0);
     }
 
+    /// Begins the log anew from here if it has grown long: for whoever never goes back, and may change things for hours. To be
+    /// called after steps, when nothing has been done at this step yet.
+    pub fn forget_long_log(&mut self) {
+        // If no energy came from nowhere, this is a good state: it may be the first of a new log.
+        if self.history.log_is_long() && !self.is_suspect() {
+            self.keep_history(self.history_budget);
+        }
+    }
+
     /// Lends the engine worker threads. However many there are, the bits are the same.
     pub fn set_workers(&mut self, workers: Arc<dyn Workers>) {
         self.workers = workers;

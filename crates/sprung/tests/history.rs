@@ -528,3 +528,26 @@ fn a_settled_state_that_was_saved_does_not_look_like_a_blow_up() {
         steps(&mut saved, 100);
     }
 }
+
+/// Whoever never goes back may change things for hours: the log begins anew, and the motion is the same.
+#[test]
+fn a_long_log_can_be_forgotten() {
+    let run = |forgets: bool| {
+        let mut run = scenes::engine(&scenes::chain());
+        let mut longest = 0;
+        for change in 0..3000 {
+            let force = Vec3::new(0.0, (change % 7) as f32, 0.0);
+            run.change(Change::Force(14, force)).expect("allowed");
+            run.steps(1).expect("it is stable");
+            if forgets {
+                run.forget_long_log();
+            }
+            longest = longest.max(run.log().len());
+        }
+        (run.state_hash(), longest)
+    };
+    let (kept, forgotten) = (run(false), run(true));
+    assert_eq!(kept.0, forgotten.0);
+    assert_eq!(kept.1, 3000);
+    assert!(forgotten.1 <= 1025, "{}", forgotten.1);
+}

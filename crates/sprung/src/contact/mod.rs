@@ -2,5 +2,5 @@
 
 mod plane;
 
-pub(crate) use plane::UNIT_TOLERANCE;
+pub(crate) use plane::unit;
 pub use plane::{ContactLaw, Plane};

@@ -9,7 +9,7 @@ use crate::math::dot;
 use crate::params::{DAMPING_RANGE, STIFFNESS_RANGE, check_in, check_vector};
 
 /// How far the length of a normal may be from 1.
-pub(crate) const UNIT_TOLERANCE: f32 = 1e-5;
+const UNIT_TOLERANCE: f32 = 1e-5;
 
 /// How a touched plane answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -45,6 +45,20 @@ impl Plane {
     pub fn level(y: f32, stiffness: f32, damping: f32) -> Self {
         let point = Vec3::new(0.0, y, 0.0);
         Self { point, normal: Vec3::Y, stiffness, damping, law: ContactLaw::default() }
+    }
+
+    /// A plane out of whose ground `normal` points, of any length but zero.
+    ///
+    /// # Errors
+    /// [`Code::OutOfRange`], naming the field.
+    pub fn new(point: Vec3, normal: DVec3, stiffness: f32, damping: f32, law: ContactLaw) -> Result<Self> {
+        if !(normal.is_finite() && normal != DVec3::ZERO) {
+            let sentence = format!("is {normal}, and must be finite and not zero");
+            return Err(Error::new(Code::OutOfRange, sentence).at_field("normal"));
+        }
+        let plane = Self { point, normal: unit(normal), stiffness, damping, law };
+        plane.validate()?;
+        Ok(plane)
     }
 
     /// Checks ranges and that the normal has unit length.
@@ -93,4 +107,16 @@ impl Plane {
         let total = if self.law == ContactLaw::Push { push.max(0.0) } else { push };
         (normal * spring, normal * (total - spring))
     }
+}
+
+/// A direction of length 1. One that has it already is taken as it is, so that what was saved comes back to the bit.
+pub(crate) fn unit(direction: DVec3) -> Vec3 {
+    let written = direction.as_vec3();
+    if (written.length() - 1.0).abs() <= UNIT_TOLERANCE {
+        return written;
+    }
+    // One that is so long or short that its square would overflow or vanish is brought to a sensible length first.
+    let largest = direction.abs().max_element();
+    let sensible = if (1e-100..1e100).contains(&largest) { direction } else { direction / largest };
+    sensible.normalize().as_vec3()
 }

@@ -217,12 +217,8 @@ impl Team {
 
     /// The energies of this state, without the ledger's sums; the same bits for any number of threads.
     pub fn energy(&mut self, params: &Params, workers: &dyn Workers) -> Energy {
-        for after in 1..self.regions.len() {
-            let (before, rest) = self.regions.split_at_mut(after);
-            if let (Some(region), Some(next)) = (before.last_mut(), rest.first_mut()) {
-                own(region).look_ahead(&self.plan, own(next));
-            }
-        }
+        let Self { plan, regions, .. } = self;
+        for_neighbours(regions, |region, next| region.look_ahead(plan, next));
         let Self { plan, laws, level, regions, .. } = self;
         let (gravity, planes) = (params.gravity, &params.planes[..]);
         for_each(regions.len(), workers, &|index| {
@@ -264,13 +260,11 @@ impl Team {
             }
             region.stop(dt);
         }
-        for index in 1..self.regions.len() {
-            let (before, after) = self.regions.split_at_mut(index);
-            if let (Some(before), Some(after)) = (before.last_mut(), after.first_mut()) {
-                own(after).look_back(own(before));
-                own(before).look_ahead(&self.plan, own(after));
-            }
-        }
+        let Self { plan, regions, .. } = self;
+        for_neighbours(regions, |region, next| {
+            next.look_back(region);
+            region.look_ahead(plan, next);
+        });
         (self.are_behind, self.are_kept_here) = (false, false);
     }
 
@@ -434,6 +428,16 @@ fn write(arrays: &mut Arrays<6>, vectors: impl Iterator<Item = [Vec3; 2]>) {
 }
 
 /// A lock that is hardly ever waited for. If another thread panicked, so does the caller of the step: nobody reads on.
+/// Calls `look` with each region and the one after it.
+fn for_neighbours(regions: &mut [Mutex<Region>], mut look: impl FnMut(&mut Region, &mut Region)) {
+    for after in 1..regions.len() {
+        let (before, rest) = regions.split_at_mut(after);
+        if let (Some(region), Some(next)) = (before.last_mut(), rest.first_mut()) {
+            look(own(region), own(next));
+        }
+    }
+}
+
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

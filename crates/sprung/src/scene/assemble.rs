@@ -11,7 +11,6 @@ use super::suggest::shortened;
 use super::types::{Body, Exception, Joint, Plane, Scene, Springs};
 use crate::build::{Material, Mesh, ModelBuilder};
 use crate::contact;
-use crate::contact::UNIT_TOLERANCE;
 use crate::error::{Code, Error, Result};
 use crate::math::rotation;
 use crate::model::Model;
@@ -470,20 +469,11 @@ pub(super) fn plane(plane: &Plane) -> contact::Plane {
     let level = || DVec3::new(0.0, plane.y.unwrap_or(0.0), 0.0);
     contact::Plane {
         point: plane.point.map_or_else(level, DVec3::from_array).as_vec3(),
-        normal: plane.normal.map_or(Vec3::Y, unit),
+        normal: plane.normal.map_or(Vec3::Y, |normal| contact::unit(DVec3::from_array(normal))),
         stiffness: plane.stiffness as f32,
         damping: plane.damping as f32,
         law: plane.law,
     }
-}
-
-/// A direction of length 1. One that has it already is taken as it is, so that what was saved comes back to the bit.
-fn unit(direction: [f64; 3]) -> Vec3 {
-    let written = vec3(direction);
-    if (written.length() - 1.0).abs() <= UNIT_TOLERANCE {
-        return written;
-    }
-    DVec3::from_array(direction).normalize().as_vec3()
 }
 
 fn material(stiffness: f64, damping: f64) -> Material {

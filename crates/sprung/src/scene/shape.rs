@@ -3,14 +3,7 @@
 use glam::DVec3;
 
 use super::types::{Body, GridPlane, Scene, Springs};
-use crate::build::{DEFAULT_MAX_SPRINGS, Lattice};
-
-/// Memory of one point in a simulation (state, the first and the last good one, parameters, forces: 260 as measured on
-/// large scenes) and in the vectors with which the sharp limit is found (160), bytes.
-const POINT_BYTES: u64 = 420;
-/// Memory of one spring in a simulation (41 as measured), as several threads see it (40), and where the sharp limit is
-/// found (32), bytes.
-const SPRING_BYTES: u64 = 115;
+use crate::build::{DEFAULT_MAX_SPRINGS, Lattice, estimated_bytes};
 
 impl Body {
     /// The lattice of a chain, grid or block; `None` for explicit points.
@@ -116,7 +109,6 @@ impl Scene {
             let all = points(&joint.between[0]).saturating_mul(points(&joint.between[1]));
             springs = springs.saturating_add(joint.pairs.as_ref().map_or(all, |pairs| pairs.len() as u64));
         }
-        let points = self.point_count().saturating_mul(POINT_BYTES);
-        points.saturating_add(springs.min(limit).saturating_mul(SPRING_BYTES))
+        estimated_bytes(self.point_count(), springs.min(limit))
     }
 }
