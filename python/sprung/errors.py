@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -90,3 +91,14 @@ def refusal(field: str, sentence: str, *, code: str = "out_of_range", fix: str |
     """The error that an argument of this name is not allowed."""
     message = f"{field}: {sentence}" if fix is None else f"{field}: {sentence}; {fix}"
     return Error(message, code=code, sentence=sentence, field=field, fix=fix)
+
+
+def needs(what: str, extra: str, *packages: str) -> None:
+    """Refuses what needs packages that are not installed, and says how they come."""
+    missing = [package for package in packages if importlib.util.find_spec(package) is None]
+    if missing:
+        *most, last = missing
+        names = f"{', '.join(most)} and {last}" if most else last
+        sentence = f"{what} needs {names}, which {'are' if most else 'is'} not installed"
+        fix = f'pip install ".[{extra}]" in the folder of sprung brings what is needed'
+        raise Error(f"{sentence}; {fix}", code="unsupported", sentence=sentence, fix=fix)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _engine
-from .errors import refusal
+from .errors import needs, refusal
 
 if TYPE_CHECKING:
     import pandas
@@ -222,6 +222,7 @@ class Trajectory:
 
     def to_xarray(self) -> xarray.Dataset:
         """As an xarray dataset: ``position`` and ``velocity`` over time, point and axis, and the energies over time."""
+        needs("a dataset", "tables", "xarray")
         import xarray
 
         dims = ("time", "point", "axis")
@@ -236,6 +237,7 @@ class Trajectory:
 
     def to_pandas(self) -> pandas.DataFrame:
         """As a tidy table: a row for each frame and point, with time (s), position (m) and velocity (m/s)."""
+        needs("a table", "tables", "pandas")
         import pandas
 
         frames, points, _ = self.positions.shape
@@ -288,6 +290,7 @@ def _unpickled(source: Scene | Model, packed: bytes) -> Trajectory:
 def _axes(axes: Axes | None) -> Axes:
     if axes is not None:
         return axes
+    needs("a plot", "plot", "matplotlib")
     import matplotlib.pyplot as plt
 
     return plt.subplots()[1]

@@ -501,6 +501,6 @@ def test_what_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None
     with pytest.raises(sprung.Error) as caught:
         sprung.sweep("jelly", seconds=1)
     sentence = (
-        'a sweep needs pyarrow, which is not installed; pip install "sprung[sweep]" installs what is needed'
+        'a sweep needs pyarrow, which is not installed; pip install ".[sweep]" in the folder of sprung brings what is needed'
     )
     assert str(caught.value) == f"sweep: {sentence}"

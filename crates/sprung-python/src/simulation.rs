@@ -16,8 +16,9 @@ use crate::scene::Scene;
 use crate::threads::{Lent, lend};
 use crate::{numbers, saving, tell, views};
 
-/// Springs and points that are stepped over between two looks whether somebody pressed Ctrl-C: some hundredths of a second.
-const WORK_BETWEEN_LOOKS: u64 = 1 << 24;
+/// Springs and points that are stepped over between two looks whether somebody pressed Ctrl-C: about a tenth of a second. Less
+/// would part the steps that threads take in one go.
+const WORK_BETWEEN_LOOKS: u64 = 1 << 27;
 
 /// A simulation. Any thread may use it; one after another.
 #[pyclass(frozen, subclass, module = "sprung._engine")]

@@ -3,7 +3,6 @@ table."""
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import operator
 import os
@@ -13,7 +12,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
-from ..errors import refusal
+from ..errors import needs, refusal
 from ..model import Model
 from ..scene import Changes, Scene, Value
 from ..scene import scene as scene_of
@@ -100,7 +99,7 @@ def sweep(
 
     Raises :class:`Error` for arguments that are wrong, before anything runs.
     """
-    _needed("dask", "distributed", "pandas", "pyarrow", *(("zarr",) if keep is not None else ()))
+    needs("a sweep", "sweep", "distributed", "pandas", "pyarrow", *(("zarr",) if keep is not None else ()))
     if keep not in (None, "trajectories"):
         raise refusal("keep", f'is {keep!r}, and must be "trajectories" or nothing')
     if keep is not None and out is None:
@@ -159,15 +158,6 @@ def _run(
         for lines, count in results(client, experiment, left, len(grid) - len(folder.done)):
             folder.add(lines)
             advance(count)
-
-
-def _needed(*packages: str) -> None:
-    missing = [package for package in packages if importlib.util.find_spec(package) is None]
-    if missing:
-        names = " and ".join(missing)
-        fix = 'pip install "sprung[sweep]" installs what is needed'
-        sentence = f"a sweep needs {names}, which {'is' if len(missing) == 1 else 'are'} not installed"
-        raise refusal("sweep", sentence, code="unsupported", fix=fix)
 
 
 def _named(scene: Any) -> str | os.PathLike[str]:
