@@ -29,6 +29,10 @@ __all__ = ["Animation", "Trajectory"]
 #: The axes by their names.
 AXES = {"x": 0, "y": 1, "z": 2}
 
+#: Where energy is, and where it went, in colours that nobody confuses (Okabe and Ito, 2008).
+STORED = {"kinetic": "#0072b2", "gravitational": "#e69f00", "elastic": "#009e73", "contact": "#d55e00"}
+BOOKED = {"lost_in_dampers": "#56b4e9", "lost_in_contact": "#cc79a7", "integrator_error": "#999999"}
+
 
 class Trajectory:
     """The frames of a run, from :meth:`Simulation.run`. It never changes.
@@ -187,19 +191,21 @@ class Trajectory:
 
     def plot_energy(self, axes: Axes | None = None) -> Axes:
         """Plots where the energy is over time, and where it went as far as the ledger was kept, with matplotlib."""
+        # Beside the curves, which use all of the room, where the figure is ours.
+        place: dict[str, Any] = {} if axes else {"loc": "center left", "bbox_to_anchor": (1, 0.5), "frameon": False}
         axes = _axes(axes)
         energy = self.energy
-        for name in ("kinetic", "gravitational", "elastic", "contact"):
-            values = getattr(energy, name)
-            if np.any(values != values[0]) or values[0] != 0:
-                axes.plot(self.times, values, label=name)
-        axes.plot(self.times, energy.total, color="black", label="total")
-        for name in ("lost_in_dampers", "lost_in_contact", "integrator_error"):
+        for name, colour in STORED.items():
             values = getattr(energy, name)
             if values.any():
-                axes.plot(self.times, values, linestyle="--", label=name.replace("_", " "))
+                axes.plot(self.times, values, color=colour, label=name)
+        axes.plot(self.times, energy.total, color="black", label="total")
+        for name, colour in BOOKED.items():
+            values = getattr(energy, name)
+            if values.any():
+                axes.plot(self.times, values, color=colour, linestyle="--", label=name.replace("_", " "))
         axes.set(xlabel="time (s)", ylabel="energy (J)", title=self.title)
-        axes.legend()
+        axes.legend(**place)
         return axes
 
     def plot(
@@ -293,4 +299,4 @@ def _axes(axes: Axes | None) -> Axes:
     needs("a plot", "plot", "matplotlib")
     import matplotlib.pyplot as plt
 
-    return plt.subplots()[1]
+    return plt.subplots(layout="constrained")[1]
