@@ -34,6 +34,7 @@ struct Stage {
 /// All stages, in the order `ci` runs them: what fails quickly comes first.
 const STAGES: &[Stage] = &[
     Stage { name: "fmt", about: "the code is formatted", run: stages::fmt },
+    Stage { name: "locks", about: "every Cargo.lock is what its manifests need", run: stages::locks },
     Stage {
         name: "clippy",
         about: "no compiler or clippy warning, in any target or feature",

@@ -11,6 +11,15 @@ pub fn fmt() -> Outcome {
     run(&mut cargo(&["fmt", "--manifest-path", "fuzz/Cargo.toml", "--check"]))
 }
 
+/// `fuzz/` has a lock file of its own, which nothing but its stage, late and long, would find behind the times.
+pub fn locks() -> Outcome {
+    for manifest in ["Cargo.toml", "fuzz/Cargo.toml"] {
+        read(&mut cargo(&["tree", "--locked", "--quiet", "--manifest-path", manifest]))
+            .map_err(|reason| format!("{reason}; `cargo tree --manifest-path {manifest}` mends it"))?;
+    }
+    Ok(())
+}
+
 pub fn clippy() -> Outcome {
     run(&mut cargo(&[
         "clippy",
