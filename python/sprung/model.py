@@ -54,7 +54,15 @@ class Plane:
 
 @dataclass(frozen=True)
 class Lattice:
-    """Points in a row, a sheet or a block, and the springs between neighbours."""
+    """Points in a row, a sheet or a block, and the springs between neighbours.
+
+    >>> import sprung
+    >>> cloth = sprung.grid(3, 2, spacing=1)
+    >>> cloth.positions.shape, cloth.structural.shape, cloth.triangles.shape
+    ((6, 3), (7, 2), (4, 3))
+    >>> cloth.sides[:4]
+    ('left', 'right', 'back', 'front')
+    """
 
     #: Positions, (n, 3), m.
     positions: NDArray[np.float64]
@@ -72,7 +80,12 @@ class Lattice:
     counts: tuple[int, int, int]
 
     def springs(self, *kinds: str) -> NDArray[np.uint32]:
-        """Pairs of points of these kinds, in turn: ``"structural"``, ``"shear"``, ``"bend"``; all without any."""
+        """Pairs of points of these kinds, in turn: ``"structural"``, ``"shear"``, ``"bend"``; all without any.
+
+        >>> import sprung
+        >>> sprung.grid(2, 2, spacing=1).springs("shear").tolist()
+        [[0, 3], [1, 2]]
+        """
         return np.concatenate([getattr(self, kind) for kind in kinds or ("structural", "shear", "bend")])
 
     def side(self, name: str) -> NDArray[np.uint32]:
@@ -210,7 +223,16 @@ class Model(_engine.Model):
         planes: Sequence[Plane] = (),
         threads: int | None = None,
     ) -> Simulation:
-        """A simulation of it: ``dt`` in s, or the largest that is safely stable, ``gravity`` in m/s²."""
+        """A simulation of it: ``dt`` in s, or the largest that is safely stable, ``gravity`` in m/s².
+
+        >>> import sprung
+        >>> rope = sprung.chain(11, step=[0.1, 0, 0])
+        >>> model = sprung.Model(rope.positions, 0.01, rope.structural, stiffness=100, damping=0.1, pinned=[0])
+        >>> swing = model.simulation(dt=1e-3, planes=[sprung.Plane(y=-0.5, stiffness=100, damping=0.1)])
+        >>> swing.step(1000)
+        >>> swing.time
+        1.0
+        """
         from .simulation import Simulation
 
         return Simulation(

@@ -29,7 +29,12 @@ Changes = Mapping[str, Value]
 
 
 class BuiltinScene(NamedTuple):
-    """A scene that comes with the engine."""
+    """A scene that comes with the engine.
+
+    >>> import sprung
+    >>> sprung.scenes()[0].title
+    'A mass on a spring'
+    """
 
     #: As :func:`scene` takes it.
     name: str
@@ -56,6 +61,10 @@ class Scene(_engine.Scene):
         """Reads a scene file. Meshes that it names lie in its folder or below.
 
         Raises :class:`Error` with the line and the key of what is wrong.
+
+        >>> import sprung
+        >>> sprung.Scene.from_file("examples/towel.toml").simulation().surfaces[0].kind
+        'cloth'
         """
         return cls._warning(cls(Path(path).stem, file=Path(path), changes=_pairs(changes)))
 
@@ -78,7 +87,7 @@ class Scene(_engine.Scene):
         ... points = [[0, 10, 0]]
         ... ''').simulation()
         >>> falling.step(100)
-        >>> float(falling.positions[0, 1].round(2))
+        >>> round(float(falling.positions[0, 1]), 2)
         5.05
         """
         return cls._warning(cls(name, text=text, folder=Path(folder), changes=_pairs(changes)))
@@ -126,6 +135,10 @@ class Scene(_engine.Scene):
         """A simulation of it, at its start, on so many threads: by default one for each processor.
 
         However many there are, the bits are the same. Small scenes use one.
+
+        >>> import sprung
+        >>> sprung.scene("jelly").simulation(threads=1)
+        <sprung.Simulation 'A cube of jelly falling on a plane': 1000 points, 7560 springs, t = 0 s, step 0>
         """
         from .simulation import Simulation
 
@@ -165,7 +178,12 @@ class Scene(_engine.Scene):
 
 
 class View:
-    """The window in a browser, inside a notebook."""
+    """The window in a browser, inside a notebook.
+
+    >>> import sprung
+    >>> sprung.scene("jelly").view(size=(640, 480)).size
+    (640, 480)
+    """
 
     def __init__(self, name: str, page: str, link: str, size: tuple[int, int]) -> None:
         self.name, self.page, self.link, self.size = name, page, link, size

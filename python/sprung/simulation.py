@@ -34,7 +34,17 @@ Progress = bool | None
 
 @dataclass(frozen=True)
 class Energy(Generic[Number]):
-    """Where the energy is, J, and where it went since the start; for a trajectory an array of each, over time."""
+    """Where the energy is, J, and where it went since the start; for a trajectory an array of each, over time.
+
+    >>> import sprung
+    >>> spring = sprung.scene("spring").simulation()
+    >>> spring.keeps_ledger = True
+    >>> spring.step(1000)
+    >>> energy = spring.energy
+    >>> books = energy.start + energy.work_in - energy.lost_in_dampers + energy.integrator_error
+    >>> abs(energy.total - books) < 1e-4  # J, of rounding
+    True
+    """
 
     #: Of the points that forces can move.
     kinetic: Number
@@ -55,18 +65,36 @@ class Energy(Generic[Number]):
 
     @property
     def potential(self) -> Number:
-        """Gravitational, elastic and contact energy, J."""
+        """Gravitational, elastic and contact energy, J.
+
+        >>> import sprung
+        >>> energy = sprung.scene("jelly").simulation().energy
+        >>> energy.potential == energy.gravitational + energy.elastic + energy.contact
+        True
+        """
         return self.gravitational + self.elastic + self.contact
 
     @property
     def total(self) -> Number:
-        """Kinetic and potential energy, J."""
+        """Kinetic and potential energy, J.
+
+        >>> import sprung
+        >>> energy = sprung.scene("jelly").simulation().energy
+        >>> energy.total == energy.start
+        True
+        """
         return self.kinetic + self.potential
 
 
 @dataclass(frozen=True)
 class Limit:
-    """How large ``dt`` may be, and what keeps it from being larger."""
+    """How large ``dt`` may be, and what keeps it from being larger.
+
+    >>> import sprung
+    >>> limit = sprung.scene("spring").simulation().certified_limit
+    >>> limit.set_by, limit.spring, limit.points
+    ('spring 0 of pendulum (points 0 and 1)', 0, [0, 1])
+    """
 
     #: The limit, s; infinite where there is none.
     dt: float
@@ -80,7 +108,13 @@ class Limit:
 
 @dataclass(frozen=True)
 class Stability:
-    """How large ``dt`` may be: three answers, from exact to safe for ever. See docs/method.md."""
+    """How large ``dt`` may be: three answers, from exact to safe for ever. See docs/method.md.
+
+    >>> import sprung
+    >>> now = sprung.scene("jelly").simulation().stability
+    >>> now.every_configuration.dt <= now.certified.dt <= now.sharp
+    True
+    """
 
     #: The step length in use, s.
     dt: float
@@ -96,13 +130,25 @@ class Stability:
 
     @property
     def is_stable(self) -> bool:
-        """Whether ``dt`` is below the true limit."""
+        """Whether ``dt`` is below the true limit.
+
+        >>> import sprung
+        >>> sprung.scene("jelly", {"dt": 0.1}).simulation().stability.is_stable
+        False
+        """
         return self.dt < self.sharp
 
 
 @dataclass(frozen=True)
 class Body:
-    """A body: its points and springs are slices, to take its rows of any array."""
+    """A body: its points and springs are slices, to take its rows of any array.
+
+    >>> import sprung
+    >>> jelly = sprung.scene("jelly").simulation()
+    >>> body = jelly.bodies[0]
+    >>> body.name, jelly.positions[body.points].shape, jelly.springs[body.springs].shape
+    ('jelly', (1000, 3), (7560, 2))
+    """
 
     name: str
     points: slice
@@ -111,7 +157,13 @@ class Body:
 
 @dataclass(frozen=True)
 class Joint:
-    """Springs between bodies."""
+    """Springs between bodies.
+
+    >>> import sprung
+    >>> bridge = sprung.scene("bridge").simulation()
+    >>> [joint.name for joint in bridge.joints][:2]
+    ['west post - deck', 'east post - deck']
+    """
 
     name: str
     springs: slice
@@ -119,7 +171,13 @@ class Joint:
 
 @dataclass(frozen=True)
 class Surface:
-    """A surface that is drawn and exported, as it is now."""
+    """A surface that is drawn and exported, as it is now.
+
+    >>> import sprung
+    >>> skin = sprung.scene("jelly").simulation().surfaces[0]
+    >>> skin.body, skin.kind, skin.triangles.shape[1]
+    ('jelly', 'skin', 3)
+    """
 
     #: The body it belongs to.
     body: str
@@ -167,11 +225,24 @@ class Simulation(_engine.Simulation):
         """Takes so many steps of ``dt``. Many at once are faster than one after another, with the same bits.
 
         Raises :class:`BlowUp` if the run blows up: the last good state is then the current one. Ctrl-C ends it after a whole step.
+
+        >>> import sprung
+        >>> jelly = sprung.scene("jelly").simulation()
+        >>> jelly.step(100)
+        >>> jelly.steps_taken
+        100
         """
         super().step(count)
 
     def frame(self) -> None:
-        """Takes ``substeps`` steps, as from one displayed frame to the next."""
+        """Takes ``substeps`` steps, as from one displayed frame to the next.
+
+        >>> import sprung
+        >>> cloth = sprung.scene("cloth").simulation()
+        >>> cloth.frame()
+        >>> cloth.steps_taken == cloth.substeps
+        True
+        """
         super().frame()
 
     def run(
@@ -243,7 +314,16 @@ class Simulation(_engine.Simulation):
         return recorded()
 
     def reset(self) -> None:
-        """Goes back to how it began, parameters and all, bit for bit."""
+        """Goes back to how it began, parameters and all, bit for bit.
+
+        >>> import sprung
+        >>> jelly = sprung.scene("jelly").simulation()
+        >>> jelly.stiffness = 100
+        >>> jelly.step(10)
+        >>> jelly.reset()
+        >>> jelly.steps_taken, float(jelly.stiffness[0])
+        (0, 750.0)
+        """
         super().reset()
 
     def settle(self, *, residual_force: float | None = None, max_steps: int | None = None) -> float:
@@ -284,12 +364,25 @@ class Simulation(_engine.Simulation):
 
     @property
     def certified_limit(self) -> Limit:
-        """The limit on ``dt`` in this configuration, as quickly as three steps."""
+        """The limit on ``dt`` in this configuration, as quickly as three steps.
+
+        >>> import sprung
+        >>> jelly = sprung.scene("jelly").simulation()
+        >>> jelly.dt < jelly.certified_limit.dt
+        True
+        """
         return Limit(*self._quick_limit())
 
     @property
     def planes(self) -> tuple[Plane, ...]:
-        """The ground planes; set them as a whole."""
+        """The ground planes; set them as a whole.
+
+        >>> import sprung
+        >>> jelly = sprung.scene("jelly").simulation()
+        >>> jelly.planes = [*jelly.planes, sprung.Plane(point=(8, 0, 0), normal=(-1, 0, 0), stiffness=50, damping=10)]
+        >>> len(jelly.planes)
+        2
+        """
         return tuple(
             Plane(point=point, normal=normal, stiffness=stiffness, damping=damping, law=law)
             for point, normal, stiffness, damping, law in self._tell_planes()
@@ -312,12 +405,24 @@ class Simulation(_engine.Simulation):
 
     @property
     def joints(self) -> list[Joint]:
-        """The springs between bodies."""
+        """The springs between bodies.
+
+        >>> import sprung
+        >>> bridge = sprung.scene("bridge").simulation()
+        >>> between = bridge.springs[bridge.joints[0].springs]
+        """
         return [Joint(*joint) for joint in self._tell_joints()]
 
     @property
     def surfaces(self) -> list[Surface]:
-        """The surfaces, as they are now."""
+        """The surfaces, as they are now.
+
+        >>> import sprung
+        >>> cloth = sprung.scene("cloth").simulation()
+        >>> cloth.step(100)
+        >>> cloth.surfaces[0].vertices.shape
+        (400, 3)
+        """
         return [Surface(body, kind, *self._surface(index)) for index, (body, kind) in enumerate(self._tell_surfaces())]
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> Path:
@@ -351,7 +456,16 @@ class Simulation(_engine.Simulation):
 
 
 def load(path: str | os.PathLike[str], *, threads: int | None = None) -> Simulation:
-    """Goes on from a checkpoint that :meth:`Simulation.save`, the window or ``sprung run --checkpoint`` wrote."""
+    """Goes on from a checkpoint that :meth:`Simulation.save`, the window or ``sprung run --checkpoint`` wrote.
+
+    >>> import sprung
+    >>> import tempfile, pathlib
+    >>> jelly = sprung.scene("jelly").simulation()
+    >>> jelly.step(50)
+    >>> saved = jelly.save(pathlib.Path(tempfile.mkdtemp()) / "jelly.sprung")
+    >>> sprung.load(saved).steps_taken
+    50
+    """
     name, scene, simulation = _engine.read_checkpoint(Path(path))
     return Simulation(Scene(name, packed=scene), packed=simulation, threads=threads)
 

@@ -61,32 +61,69 @@ class Trajectory:
 
     @property
     def title(self) -> str:
-        """What was simulated."""
+        """What was simulated.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.title
+        'A cube of jelly falling on a plane'
+        """
         return self._frames.title
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """Simulated time of each frame, (f,), s."""
+        """Simulated time of each frame, (f,), s.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.times[:3].round(2).tolist()
+        [0.0, 0.04, 0.08]
+        """
         return self._frames.times
 
     @property
     def steps(self) -> NDArray[np.uint64]:
-        """The step of each frame, (f,)."""
+        """The step of each frame, (f,).
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.steps.shape
+        (26,)
+        """
         return self._frames.steps
 
     @property
     def frame_time(self) -> float:
-        """From one frame to the next, s."""
+        """From one frame to the next, s.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> round(fall.frame_time, 2)
+        0.04
+        """
         return self._frames.frame_time
 
     @property
     def positions(self) -> NDArray[np.float32]:
-        """Positions, (f, n, 3), m; read-only, and without a copy."""
+        """Positions, (f, n, 3), m; read-only, and without a copy.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.positions[:, 0, 1].shape  # the height of the first point over time
+        (26,)
+        """
         return self._frames.positions
 
     @property
     def velocities(self) -> NDArray[np.float32]:
-        """Velocities, (f, n, 3), m/s; read-only, and without a copy."""
+        """Velocities, (f, n, 3), m/s; read-only, and without a copy.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> speeds = abs(fall.velocities[:, :, 1])
+        >>> bool(speeds[5].max() < speeds[10].max())  # ever faster
+        True
+        """
         velocities = self._frames.velocities
         if velocities is None:
             raise AttributeError("velocities were not recorded; run(…, velocities=True) records them")
@@ -107,13 +144,25 @@ class Trajectory:
 
     @property
     def bodies(self) -> list[Body]:
-        """The bodies, whose points are slices of the second axis."""
+        """The bodies, whose points are slices of the second axis.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.positions[:, fall.bodies[0].points].shape
+        (26, 1000, 3)
+        """
         from .simulation import Body
 
         return [Body(*body) for body in self._frames.tell_bodies()]
 
     def surface(self, index: int = 0) -> NDArray[np.float32]:
-        """The vertices of a surface in every frame, (f, v, 3), m: of :attr:`Simulation.surfaces`, which has the triangles."""
+        """The vertices of a surface in every frame, (f, v, 3), m: of :attr:`Simulation.surfaces`, which has the triangles.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.surface().shape[0]
+        26
+        """
         return self._frames.surface(index)
 
     def save(
@@ -190,7 +239,13 @@ class Trajectory:
         return self.picture()
 
     def plot_energy(self, axes: Axes | None = None) -> Axes:
-        """Plots where the energy is over time, and where it went as far as the ledger was kept, with matplotlib."""
+        """Plots where the energy is over time, and where it went as far as the ledger was kept, with matplotlib.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.plot_energy().get_ylabel()
+        'energy (J)'
+        """
         # Beside the curves, which use all of the room, where the figure is ours.
         place: dict[str, Any] = {} if axes else {"loc": "center left", "bbox_to_anchor": (1, 0.5), "frameon": False}
         axes = _axes(axes)
@@ -217,7 +272,13 @@ class Trajectory:
         label: str | None = None,
     ) -> Axes:
         """Plots a coordinate of one point or several over time: ``"x"``, ``"y"``, ``"z"``; ``"vx"``, ``"vy"``,
-        ``"vz"``; or ``"speed"``. ``label`` is what the legend calls it, by default the point."""
+        ``"vz"``; or ``"speed"``. ``label`` is what the legend calls it, by default the point.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.plot([0, 999], "y").get_ylabel()
+        'y (m)'
+        """
         values, quantity = self._coordinate(axis)
         axes = _axes(axes)
         for point in np.atleast_1d(points):
@@ -227,7 +288,13 @@ class Trajectory:
         return axes
 
     def to_xarray(self) -> xarray.Dataset:
-        """As an xarray dataset: ``position`` and ``velocity`` over time, point and axis, and the energies over time."""
+        """As an xarray dataset: ``position`` and ``velocity`` over time, point and axis, and the energies over time.
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> dict(fall.to_xarray().position.sizes)
+        {'time': 26, 'point': 1000, 'axis': 3}
+        """
         needs("a dataset", "tables", "xarray")
         import xarray
 
@@ -242,7 +309,13 @@ class Trajectory:
         return xarray.Dataset(data, coords=coords, attrs={"title": self.title})
 
     def to_pandas(self) -> pandas.DataFrame:
-        """As a tidy table: a row for each frame and point, with time (s), position (m) and velocity (m/s)."""
+        """As a tidy table: a row for each frame and point, with time (s), position (m) and velocity (m/s).
+
+        >>> import sprung
+        >>> fall = sprung.scene("jelly").simulation().run(1, fps=25)
+        >>> fall.to_pandas().columns.tolist()
+        ['time', 'point', 'x', 'y', 'z', 'vx', 'vy', 'vz']
+        """
         needs("a table", "tables", "pandas")
         import pandas
 
@@ -268,14 +341,27 @@ class Trajectory:
 
 
 class Animation:
-    """A moving picture: a notebook shows it, :meth:`save` writes it."""
+    """A moving picture: a notebook shows it, :meth:`save` writes it.
+
+    >>> import sprung
+    >>> swing = sprung.scene("spring").simulation().run(0.2, fps=25).animate(size=(160, 90))
+    >>> swing.format, swing.content[:3]
+    ('gif', b'GIF')
+    """
 
     def __init__(self, content: bytes, format: str) -> None:
         self.content = content
         self.format = format
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Writes it to a file."""
+        """Writes it to a file.
+
+        >>> import sprung
+        >>> swing = sprung.scene("spring").simulation().run(0.2, fps=25).animate(size=(160, 90))
+        >>> import tempfile, pathlib
+        >>> swing.save(pathlib.Path(tempfile.mkdtemp()) / "swing.gif").suffix
+        '.gif'
+        """
         Path(path).write_bytes(self.content)
         return Path(path)
 

@@ -34,16 +34,6 @@ pub fn python() -> Outcome {
     let checked = |arguments: &[&str]| run(&mut tidy(program(&python, arguments)));
     checked(&["-m", "mypy", "python/sprung", "python/tests"])?;
     checked(&["-m", "mypy.stubtest", "sprung._engine", "--ignore-disjoint-bases"])?;
-    checked(&[
-        "-m",
-        "pytest",
-        "--quiet",
-        "-p",
-        "no:cacheprovider",
-        "--doctest-modules",
-        "--pyargs",
-        "sprung",
-    ])?;
     checked(&["-m", "pytest", "--quiet", "-p", "no:cacheprovider", "--durations=5", "python/tests"])?;
     for version in VERSIONS {
         let system = format!("python{version}");

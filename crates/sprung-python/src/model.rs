@@ -21,6 +21,10 @@ pub struct Model {
     pub params: Params,
     pub state: State,
     /// What it is called.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.Model([[0, 0, 0]], 1, title="A stone").title
+    /// 'A stone'
     #[pyo3(get)]
     pub title: String,
 }
@@ -76,12 +80,20 @@ impl Model {
     }
 
     /// How many points there are.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.Model([[0, 0, 0], [1, 0, 0]], 1).point_count
+    /// 2
     #[getter]
     fn point_count(&self) -> usize {
         self.model.point_count()
     }
 
     /// How many springs there are.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.Model([[0, 0, 0], [1, 0, 0]], 1, [[0, 1]], stiffness=5).spring_count
+    /// 1
     #[getter]
     fn spring_count(&self) -> usize {
         self.model.spring_count()

@@ -15,6 +15,11 @@ use crate::{numbers, tell, views};
 #[pymethods]
 impl Simulation {
     /// Length of a step, s; set `"auto"` for the largest that is safely stable.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.dt = 0.005
+    /// >>> jelly.dt = "auto"
     #[getter]
     fn dt(&self, py: Python<'_>) -> f64 {
         self.lock(py).simulation.params().dt
@@ -29,6 +34,13 @@ impl Simulation {
     }
 
     /// Steps in a displayed frame.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.substeps = 4
+    /// >>> jelly.frame()
+    /// >>> jelly.steps_taken
+    /// 4
     #[getter]
     fn substeps(&self, py: Python<'_>) -> u32 {
         self.lock(py).simulation.params().substeps
@@ -42,6 +54,10 @@ impl Simulation {
     }
 
     /// Gravitational acceleration, (3,), m/s².
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.gravity = [0, -1.62, 0]  # as on the moon
     #[getter]
     fn gravity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         let gravity = PyArray1::from_slice(py, &self.lock(py).simulation.params().gravity.to_array());
@@ -66,6 +82,12 @@ impl Simulation {
     }
 
     /// Mass of each point, (n,), kg; zero fixes it in space. Set one number, or one for each.
+    ///
+    /// >>> import sprung
+    /// >>> chain = sprung.scene("chain").simulation()
+    /// >>> mass = chain.mass.copy()
+    /// >>> mass[-1] = 2
+    /// >>> chain.mass = mass
     #[getter]
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         views::floats(py, &self.lock(py).simulation.params().point_mass).map(Bound::into_any)
@@ -78,6 +100,12 @@ impl Simulation {
     }
 
     /// Whether each point is pinned, (n,): it then stays where it is. Set one for all, or one for each.
+    ///
+    /// >>> import sprung
+    /// >>> cloth = sprung.scene("cloth").simulation()
+    /// >>> cloth.settle() > 0
+    /// True
+    /// >>> cloth.pinned = False  # let it fall
     #[getter]
     fn pinned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         views::flags(py, &self.lock(py).simulation.params().point_pinned).map(Bound::into_any)
@@ -90,6 +118,10 @@ impl Simulation {
     }
 
     /// Stiffness of each spring, (m,), N/m. Set one number, or one for each.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.stiffness = jelly.stiffness / 2
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         views::floats(py, &self.lock(py).simulation.params().spring_stiffness).map(Bound::into_any)
@@ -102,6 +134,12 @@ impl Simulation {
     }
 
     /// Damping along each spring, (m,), N·s/m. Set one number, or one for each.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.damping = 0
+    /// >>> float(jelly.damping.max())
+    /// 0.0
     #[getter]
     fn damping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         views::floats(py, &self.lock(py).simulation.params().spring_damping).map(Bound::into_any)
@@ -114,6 +152,10 @@ impl Simulation {
     }
 
     /// Rest length of each spring, (m,), m. Set one number, or one for each.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.rest_lengths = 1.1 * jelly.rest_lengths  # it swells
     #[getter]
     fn rest_lengths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         views::floats(py, &self.lock(py).simulation.params().spring_rest_length).map(Bound::into_any)
@@ -126,6 +168,12 @@ impl Simulation {
     }
 
     /// Whether each spring is cut, (m,): it then exerts no force. Set one for all, or one for each.
+    ///
+    /// >>> import sprung
+    /// >>> chain = sprung.scene("chain").simulation()
+    /// >>> cut = chain.cut.copy()
+    /// >>> cut[4] = True
+    /// >>> chain.cut = cut
     #[getter]
     fn cut<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         views::flags(py, &self.lock(py).simulation.params().spring_cut).map(Bound::into_any)
@@ -138,6 +186,13 @@ impl Simulation {
     }
 
     /// A constant force on each point, (n, 3), N, until others are set; `None` takes them away.
+    ///
+    /// >>> import sprung
+    /// >>> import numpy as np
+    /// >>> flag = sprung.scene("flag").simulation()
+    /// >>> flag.external_forces = np.full((flag.point_count, 3), [0, 0, 0.01])
+    /// >>> flag.step(100)
+    /// >>> flag.external_forces = None
     #[getter]
     fn external_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let inner = self.lock(py);
@@ -163,18 +218,38 @@ impl Simulation {
     }
 
     /// Puts a point there, m, at rest.
+    ///
+    /// >>> import sprung
+    /// >>> chain = sprung.scene("chain").simulation()
+    /// >>> chain.place(5, chain.positions[5] + [0, 0.1, 0])
+    /// >>> chain.velocities[5].tolist()
+    /// [0.0, 0.0, 0.0]
     fn place(&self, py: Python<'_>, point: i64, position: &Bound<'_, PyAny>) -> PyResult<()> {
         let point = numbers::point("place", point, self.points)?;
         self.change(py, Change::Place(point, numbers::vec3("place", position)?))
     }
 
     /// Carries a point along at this velocity, m/s.
+    ///
+    /// >>> import sprung
+    /// >>> cloth = sprung.scene("cloth").simulation()
+    /// >>> cloth.carry(399, [0, 0, 0.5])
+    /// >>> cloth.step(100)
+    /// >>> cloth.velocities[399].tolist()
+    /// [0.0, 0.0, 0.5]
+    /// >>> cloth.release(399)
     fn carry(&self, py: Python<'_>, point: i64, velocity: &Bound<'_, PyAny>) -> PyResult<()> {
         let point = numbers::point("carry", point, self.points)?;
         self.change(py, Change::Carry(point, Some(numbers::vec3("carry", velocity)?)))
     }
 
     /// Pulls a point there, m, by a spring of this stiffness (N/m) and damping (N·s/m), or by one that suits it.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.drag(999, [8, 8, 8])
+    /// >>> jelly.step(50)
+    /// >>> jelly.release(999)
     #[pyo3(signature = (point, target, stiffness=None, damping=None))]
     fn drag(
         &self,
@@ -193,6 +268,11 @@ impl Simulation {
     }
 
     /// Lets a point go that was dragged or carried.
+    ///
+    /// >>> import sprung
+    /// >>> cloth = sprung.scene("cloth").simulation()
+    /// >>> cloth.drag(399, [2, 2, 2])
+    /// >>> cloth.release(399)
     fn release(&self, py: Python<'_>, point: i64) -> PyResult<()> {
         let point = numbers::point("release", point, self.points)?;
         if self.lock(py).simulation.params().carried.contains_key(&point) {

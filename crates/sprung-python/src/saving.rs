@@ -16,6 +16,11 @@ use crate::simulation::{Inner, Simulation};
 #[pymethods]
 impl Simulation {
     /// A picture of it now, of so many pixels, as the bytes of a PNG.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.picture(160, 90).startswith(b"\x89PNG")
+    /// True
     fn picture<'py>(&self, py: Python<'py>, width: u32, height: u32) -> PyResult<Bound<'py, PyBytes>> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;

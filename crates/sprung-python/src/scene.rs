@@ -28,10 +28,18 @@ pub fn builtin() -> Vec<(&'static str, String, &'static str)> {
 #[pyclass(frozen, subclass, module = "sprung._engine")]
 pub struct Scene {
     /// The name it goes by.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("jelly").name
+    /// 'jelly'
     #[pyo3(get)]
     pub name: String,
     pub scene: scenes::Scene,
     /// What is odd about its meshes, a sentence each.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("jelly").warnings
+    /// []
     #[pyo3(get)]
     warnings: Vec<String>,
 }
@@ -75,18 +83,31 @@ impl Scene {
     }
 
     /// What it shows, in a few words.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("spring").title
+    /// 'A mass on a spring'
     #[getter]
     fn title(&self) -> &str {
         &self.scene.title
     }
 
     /// What to look at.
+    ///
+    /// >>> import sprung
+    /// >>> print(sprung.scene("spring").description)
+    /// One point hangs on a spring from a fixed point and is pushed sideways: it swings, bounces and slowly comes to rest.
     #[getter]
     fn description(&self) -> &str {
         &self.scene.description
     }
 
     /// As the text of a scene file.
+    ///
+    /// >>> import sprung
+    /// >>> text = sprung.scene("jelly").to_toml()
+    /// >>> sprung.Scene.from_toml(text).simulation().spring_count
+    /// 7560
     fn to_toml(&self) -> String {
         self.scene.to_toml()
     }

@@ -164,6 +164,11 @@ impl Simulation {
     }
 
     /// Positions, (n, 3), m: read-only, and as they are now; after the next step ask again.
+    ///
+    /// >>> import sprung
+    /// >>> cloth = sprung.scene("cloth").simulation()
+    /// >>> cloth.step(100)
+    /// >>> lowest = cloth.positions[:, 1].argmin()
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let Inner { simulation, current, .. } = &mut *self.lock(py);
@@ -171,6 +176,12 @@ impl Simulation {
     }
 
     /// Velocities, (n, 3), m/s: read-only, and as they are now.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.step(50)
+    /// >>> bool((jelly.velocities[:, 1] < 0).all())
+    /// True
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let Inner { simulation, current, .. } = &mut *self.lock(py);
@@ -178,6 +189,13 @@ impl Simulation {
     }
 
     /// Begins anew with these positions, (n, 3), m, and velocities, (n, 3), m/s, or with those there are. `reset` comes back to here.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> thrown = jelly.velocities + [3, 4, 0]
+    /// >>> jelly.set_state(velocities=thrown)
+    /// >>> jelly.steps_taken, jelly.velocities[0].tolist()
+    /// (0, [3.0, 4.0, 0.0])
     #[pyo3(signature = (positions=None, velocities=None))]
     fn set_state(
         &self,
@@ -195,6 +213,12 @@ impl Simulation {
     }
 
     /// The total force on each point now, (n, 3), N, as the next step would use it.
+    ///
+    /// >>> import sprung
+    /// >>> chain = sprung.scene("chain").simulation()
+    /// >>> left = chain.settle()
+    /// >>> bool((abs(chain.forces()[~chain.pinned]) <= left).all())
+    /// True
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let mut guard = self.lock(py);
         let inner = &mut *guard;
@@ -203,48 +227,88 @@ impl Simulation {
     }
 
     /// The step it is at.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly").simulation()
+    /// >>> jelly.step(50)
+    /// >>> jelly.steps_taken
+    /// 50
     #[getter]
     fn steps_taken(&self, py: Python<'_>) -> u64 {
         self.lock(py).simulation.now().0
     }
 
     /// The simulated time, s.
+    ///
+    /// >>> import sprung
+    /// >>> jelly = sprung.scene("jelly", {"dt": 0.01}).simulation()
+    /// >>> jelly.step(50)
+    /// >>> jelly.time
+    /// 0.5
     #[getter]
     fn time(&self, py: Python<'_>) -> f64 {
         self.lock(py).simulation.now().1
     }
 
     /// The fingerprint of positions, velocities and step, as the command prints it.
+    ///
+    /// >>> import sprung
+    /// >>> one, other = (sprung.scene("jelly").simulation(threads=threads) for threads in (1, 2))
+    /// >>> one.step(100), other.step(100)
+    /// (None, None)
+    /// >>> one.state_hash == other.state_hash
+    /// True
     #[getter]
     fn state_hash(&self, py: Python<'_>) -> String {
         format!("{:016x}", self.lock(py).simulation.state_hash())
     }
 
     /// What it is called.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("jelly").simulation().title
+    /// 'A cube of jelly falling on a plane'
     #[getter]
     fn title(&self, py: Python<'_>) -> String {
         self.lock(py).title.clone()
     }
 
     /// How many threads it has been lent.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("jelly").simulation(threads=2).threads
+    /// 2
     #[getter]
     fn threads(&self, py: Python<'_>) -> usize {
         self.lock(py).lent.count()
     }
 
     /// How many points there are.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("jelly").simulation().point_count
+    /// 1000
     #[getter]
     fn point_count(&self) -> usize {
         self.points
     }
 
     /// How many springs there are.
+    ///
+    /// >>> import sprung
+    /// >>> sprung.scene("jelly").simulation().spring_count
+    /// 7560
     #[getter]
     fn spring_count(&self) -> usize {
         self.springs
     }
 
     /// Both ends of every spring, (m, 2).
+    ///
+    /// >>> import sprung
+    /// >>> chain = sprung.scene("chain").simulation()
+    /// >>> a, b = chain.springs.T
+    /// >>> along = chain.positions[b] - chain.positions[a]
     #[getter]
     fn springs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let inner = self.lock(py);
@@ -298,6 +362,13 @@ impl Simulation {
     }
 
     /// Whether every force's work is summed from here on: at several times the cost of a step, with the same motion.
+    ///
+    /// >>> import sprung
+    /// >>> spring = sprung.scene("spring").simulation()
+    /// >>> spring.keeps_ledger = True
+    /// >>> spring.step(1000)
+    /// >>> spring.energy.lost_in_dampers > 0
+    /// True
     #[getter]
     fn keeps_ledger(&self, py: Python<'_>) -> bool {
         self.lock(py).simulation.keeps_ledger()

@@ -20,7 +20,12 @@ Measure = Callable[[Iterator["Simulation"]], Mapping[str, float]]
 
 
 class BuiltinMeasure(NamedTuple):
-    """A measure that comes with the package, by its name."""
+    """A measure that comes with the package, by its name.
+
+    >>> import sprung
+    >>> [measure.name for measure in sprung.MEASURES if measure.unit == "m/s"]
+    ['top_speed']
+    """
 
     name: str
     unit: str
