@@ -125,7 +125,11 @@ fn compare(ui: &mut Ui, state: &mut AppState, has_room: bool) {
 fn memory(ui: &mut Ui, timeline: &Timeline) {
     let mega = |bytes: usize| bytes.div_ceil(1 << 20);
     let (used, most) = timeline.bytes;
-    let text = format!("recording: {} of {} MB", mega(used), mega(most));
+    // The first state, and the curves, are kept beside what may be used up.
+    let text = match used < most {
+        true => format!("recording: {} of {} MB", mega(used), mega(most)),
+        false => format!("recording: {} MB, full", mega(used)),
+    };
     fixed_width(ui, MEMORY_WIDTH, |ui| ui.weak(text)).on_hover_text(
         "States are kept now and then, and the steps between them are taken again when they are gone to: bit for bit the \
          same. When the memory is used up, the states kept lie further apart.",

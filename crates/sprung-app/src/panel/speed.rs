@@ -90,9 +90,9 @@ fn speed_text(report: &Report, picture: f64) -> Speed {
     // Of each second, what the steps would take at the speed asked for.
     let filled = report.seconds_per_step * target / report.params.dt;
     let why = if filled >= STEPS_FILL {
-        format!(": {} ms a step", millis(report.seconds_per_step))
+        format!(": {} ms/step", millis(report.seconds_per_step))
     } else if picture >= SLOW_PICTURE {
-        format!(": {:.0} ms a picture", 1e3 * picture)
+        format!(": {:.0} ms/picture", 1e3 * picture)
     } else {
         // Neither is slow: something else has the processor.
         String::new()
@@ -117,14 +117,14 @@ mod tests {
         report.playing = true;
         let dt = report.params.dt;
         let slow = 12.3456 * dt;
-        let text_of = |seconds: f64| format!("{} ms a step", significant((1e5 * seconds).round() / 1e2));
+        let text_of = |seconds: f64| format!("{} ms/step", significant((1e5 * seconds).round() / 1e2));
         for (speed, pace, step, picture, text, keeps_up) in [
             (1.0, Pace::RealTime, slow, 0.02, "1.00 × real time".to_owned(), true),
             (0.42, Pace::RealTime, slow, 0.02, format!("0.42 × real time: {}", text_of(slow)), false),
             (0.5, Pace::Slow(2.0), slow, 0.02, "0.50 × real time".to_owned(), true),
             (0.01, Pace::Slow(100.0), slow, 0.02, "0.0100 × real time".to_owned(), true),
             // Steps that leave most of the time free are not what is slow.
-            (0.42, Pace::RealTime, 0.01 * dt, 0.3, "0.42 × real time: 300 ms a picture".to_owned(), false),
+            (0.42, Pace::RealTime, 0.01 * dt, 0.3, "0.42 × real time: 300 ms/picture".to_owned(), false),
             (0.42, Pace::RealTime, 0.01 * dt, 0.02, "0.42 × real time".to_owned(), false),
             // Both are slow: without the steps, the pictures would come in time.
             (0.42, Pace::RealTime, slow, 0.3, format!("0.42 × real time: {}", text_of(slow)), false),
