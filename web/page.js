@@ -34,9 +34,21 @@ async function fetched(url, length) {
   return new Response(watched, { headers: { "Content-Type": "application/wasm" } });
 }
 
+// Whether there is anything to draw with. A context is given back: browsers allow a page only so many.
+async function canDraw() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return context !== null || ((await navigator.gpu?.requestAdapter()) ?? null) !== null;
+}
+
 async function start() {
   if (!("WebAssembly" in globalThis)) {
     return fail("This browser has no WebAssembly: sprung needs Chrome or Edge 96, Firefox 114, Safari 16.4, or newer.");
+  }
+  if (!(await canDraw())) {
+    return fail(
+      "This browser offers neither WebGPU nor WebGL 2 here. Switch hardware acceleration on in its settings, or open the page in another browser.",
+    );
   }
   const sizes = await (await fetch("sizes.json")).json();
   const { default: init } = await import("./sprung-app.js");

@@ -4,22 +4,11 @@
 //
 // For each scene: the time that the page's own thread works for a picture, and the time from one picture to the next, paused and
 // playing; medians, and of the time between pictures the longest of ten seconds too.
-import { createServer } from "node:http";
-import { readFile } from "node:fs/promises";
-import { join, normalize } from "node:path";
-
 import { chromium } from "playwright-core";
 
-const PAGE = process.env.SPRUNG_PAGE;
-const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", json: "application/json", wasm: "application/wasm" };
-const server = createServer(async (request, response) => {
-  const path = normalize(new URL(request.url, "http://localhost").pathname);
-  const file = path === "/" ? "index.html" : path.slice(1);
-  const bytes = await readFile(join(PAGE, file)).catch(() => undefined);
-  response.writeHead(bytes ? 200 : 404, { "Content-Type": TYPES[file.split(".").at(-1)] ?? "application/octet-stream" });
-  response.end(bytes);
-});
-await new Promise((done) => server.listen(0, "127.0.0.1", done));
+import { serve } from "./server.mjs";
+
+const server = await serve(process.env.SPRUNG_PAGE);
 
 const browser = await chromium.launch({
   executablePath: process.env.SPRUNG_BROWSER ?? "/usr/bin/chromium",
@@ -38,7 +27,7 @@ for (const scene of ["chain", "jelly", "cloth512", "jelly64"]) {
         window.pictures.push([begin, performance.now() - begin]);
       });
   });
-  await page.goto(`http://localhost:${server.address().port}/#scene=${scene}`);
+  await page.goto(`${server.address}#scene=${scene}`);
   await page.waitForFunction((scene) => document.title === `${scene} – sprung`, scene, { timeout: 120_000 });
   await page.waitForTimeout(3000);
   for (const state of ["playing", "paused, turning"]) {

@@ -1,47 +1,19 @@
 // The page in a real browser, as people use it: `cargo xtask web`.
 
 import assert from "node:assert/strict";
-import { createServer } from "node:http";
 import { readFile, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
-import { extname, join, normalize } from "node:path";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { chromium } from "playwright-core";
 
+import { hashes, printed } from "./hashes.mjs";
+import { serve } from "./server.mjs";
+
 const PAGE = process.env.SPRUNG_PAGE;
 const ROOT = process.env.SPRUNG_ROOT;
 const BROWSER = process.env.SPRUNG_BROWSER ?? "/usr/bin/chromium";
-
-const TYPES = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".css": "text/css",
-  ".json": "application/json",
-  ".svg": "image/svg+xml",
-  ".wasm": "application/wasm",
-  ".webmanifest": "application/manifest+json",
-};
-
-// A server as strict as one can be; `asked` has what was asked of it.
-const asked = [];
-const server = createServer(async (request, response) => {
-  const path = normalize(new URL(request.url, "http://localhost").pathname);
-  asked.push(path);
-  try {
-    const file = path === "/" ? "index.html" : path.slice(1);
-    const bytes = await readFile(join(PAGE, file));
-    response.writeHead(200, {
-      "Content-Type": TYPES[extname(file)] ?? "application/octet-stream",
-      "Content-Security-Policy":
-        "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; " +
-        "img-src 'self' blob: data:; connect-src 'self'; manifest-src 'self'; frame-ancestors 'none'",
-    });
-    response.end(bytes);
-  } catch {
-    response.writeHead(404).end();
-  }
-});
 
 const SOFTWARE = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const WAYS = {
@@ -58,12 +30,14 @@ const WAYS = {
 // As a phone has them: with two pixels to a point, which a page's own emulation does only by half.
 WAYS.phone = [...WAYS.WebGL2, "--force-device-scale-factor=2"];
 
-let address;
+// As where the graphics card's driver is on the browser's list of bad ones.
+WAYS.neither = ["--disable-3d-apis", "--disable-features=WebGPU"];
+
+let server;
 const browsers = {};
 
 before(async () => {
-  await new Promise((done) => server.listen(0, "127.0.0.1", done));
-  address = `http://localhost:${server.address().port}/`;
+  server = await serve(PAGE);
   for (const [way, args] of Object.entries(WAYS)) {
     browsers[way] = await chromium.launch({ executablePath: BROWSER, args });
   }
@@ -91,7 +65,7 @@ async function opened(way = "WebGL2", { fragment = "", ...options } = {}) {
     const url = new URL(request.url());
     if (!["localhost", ""].includes(url.hostname)) wrong.push(`asked for ${url}`);
   });
-  await page.goto(address + fragment);
+  await page.goto(server.address + fragment);
   await page.waitForSelector("#loading", { state: "hidden", timeout: 120_000 });
   return { context, page, wrong };
 }
@@ -191,6 +165,14 @@ for (const way of ["WebGL2", "WebGPU"]) {
     await context.close();
   });
 }
+
+test("a browser that cannot draw is told so", async () => {
+  const page = await browsers.neither.newPage();
+  await page.goto(server.address);
+  await page.waitForFunction(() => document.getElementById("word").textContent !== "Loading…");
+  assert.match(await page.textContent("#word"), /^This browser offers neither WebGPU nor WebGL 2 here\. .*hardware acceleration/);
+  await page.close();
+});
 
 test("every scene of the report opens and plays, and steps", async () => {
   const { context, page, wrong } = await opened();
@@ -352,7 +334,7 @@ test("the last scene comes back, with what was changed in it", async () => {
   await titled(page, "bridge – sprung");
   // What is kept is kept when one goes.
   await page.goto("about:blank");
-  await page.goto(address);
+  await page.goto(server.address);
   await page.waitForSelector("#loading", { state: "hidden", timeout: 120_000 });
   await titled(page, "bridge – sprung");
   assert.deepEqual(wrong, []);
@@ -362,30 +344,8 @@ test("the last scene comes back, with what was changed in it", async () => {
 test("every scene has the bits of the native program, in this browser too", async () => {
   const { context, page, wrong } = await opened();
   const goldens = JSON.parse(await readFile(join(ROOT, "crates/sprung/goldens.json"), "utf8"));
-  const found = await page.evaluate(async (goldens) => {
-    const engine = await import("./engine.js");
-    await engine.default({ module_or_path: "engine_bg.wasm" });
-    const found = {};
-    for (const [name, hashes] of Object.entries(goldens)) {
-      const simulation = engine.EngineSimulation.builtin(name, []);
-      found[name] = {};
-      let taken = 0;
-      for (const step of Object.keys(hashes)) {
-        simulation.step(Number(step) - taken);
-        taken = Number(step);
-        found[name][step] = simulation.state_hash();
-      }
-      simulation.free();
-    }
-    return found;
-  }, goldens);
-  const version = browsers.WebGL2.version();
-  console.log(`${"scene".padEnd(12)} ${"step".padStart(5)}  ${"native".padEnd(16)}  Chromium ${version}`);
-  for (const [name, hashes] of Object.entries(goldens)) {
-    for (const [step, native] of Object.entries(hashes)) {
-      console.log(`${name.padEnd(12)} ${step.padStart(5)}  ${native}  ${found[name][step]}`);
-    }
-  }
+  const found = await page.evaluate(hashes, goldens);
+  console.log(printed(goldens, found, `Chromium ${browsers.WebGL2.version()}`));
   assert.deepEqual(found, goldens);
   assert.deepEqual(wrong, []);
   await context.close();

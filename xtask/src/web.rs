@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::shell::{Outcome, cargo, program, read, root, run, succeeds, target};
 use crate::stages::{copy_folder, files_in, fresh_folder};
 use crate::wasm::{self, Build};
+use crate::window::Display;
 
 /// What is drawn with.
 const APP: Build<'_> =
@@ -180,8 +181,15 @@ fn check(page: &Path) -> Outcome {
     run(cargo(&["test", "--locked", "--package", "sprung-wasm", "--test", "page"])
         .env("SPRUNG_ENGINE", &modules))?;
     run(program("npm", &["ci", "--no-audit", "--no-fund", "--ignore-scripts"]).current_dir(&modules))?;
-    run(program("node", &["--test", "--test-reporter=spec", "page.test.mjs"])
-        .current_dir(&modules)
-        .env("SPRUNG_PAGE", page)
-        .env("SPRUNG_ROOT", root()))
+    let tested = |file: &str, display: Option<&Display>| {
+        let mut tests = program("node", &["--test", "--test-reporter=spec", file]);
+        tests.current_dir(&modules).env("SPRUNG_PAGE", page).env("SPRUNG_ROOT", root());
+        if let Some(display) = display {
+            tests.env("DISPLAY", display.name());
+        }
+        run(&mut tests)
+    };
+    tested("page.test.mjs", None)?;
+    // Firefox and WebKit draw on a display only; without one, or where they are not installed, the tests say that they are skipped.
+    tested("engines.test.mjs", Display::start().ok().as_ref())
 }

@@ -40,6 +40,11 @@ impl Display {
             .map_err(|error| format!("Xvfb does not say its number: {error}"))?;
         Ok(Self { server, name: format!(":{}", number.trim()) })
     }
+
+    /// As the environment variable DISPLAY has it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
 }
 
 impl Drop for Display {
