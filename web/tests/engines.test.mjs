@@ -23,7 +23,7 @@ after(() => server.close());
 async function titled(browser, title) {
   const read = async () => document.title;
   let found = "";
-  for (let tries = 0; tries < 300 && found !== title; tries += 1) {
+  for (let tries = 0; tries < 600 && found !== title; tries += 1) {
     await wait(200);
     found = await browser.run(read).catch(() => "");
   }
