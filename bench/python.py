@@ -9,6 +9,7 @@ For each scene both take as many steps at a time from the same start, and the fa
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 import time
@@ -31,7 +32,7 @@ def rust(command: str, scene: str, threads: int) -> tuple[float, int]:
 
 
 def python(scene: str, threads: int, steps: int) -> float:
-    """The same from Python, in a process of its own too: how fast a large scene is depends on where its memory happens to lie."""
+    """The same from Python, in a process of its own too."""
     arguments = [sys.executable, __file__, "--one", scene, str(threads), str(steps)]
     return float(subprocess.run(arguments, capture_output=True, check=True, text=True).stdout)
 
@@ -68,6 +69,8 @@ def main() -> None:
         print(one(sys.argv[2], int(sys.argv[3]), int(sys.argv[4])))
         return
     command = sys.argv[1] if len(sys.argv) > 1 else "target/release/sprung"
+    if shutil.which(command) is None:
+        sys.exit(f"{command} is no program: first `cargo build --release`, or say where the command is")
     print("| scene | springs | threads | Rust, ns | Python, ns | ratio |\n|---|---:|---:|---:|---:|---:|")
     for scene in SCENES:
         springs = sprung.scene(scene).simulation().spring_count

@@ -4,7 +4,7 @@
 //     RUSTFLAGS=-Ctarget-feature=+simd128 cargo build --release -p sprung --features rayon --example asked \
 //         --target wasm32-wasip1-threads
 //     node bench/wasm_threads.mjs target/wasm32-wasip1-threads/release/examples/asked.wasm [SCENE…]
-import { readFileSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { WASI } from "node:wasi";
 import { Worker, isMainThread, workerData } from "node:worker_threads";
 
@@ -34,6 +34,10 @@ function start(wasi, memory, begin) {
 
 if (isMainThread) {
   const [file, ...scenes] = process.argv.slice(2);
+  if (!file || !existsSync(file)) {
+    console.error(`${file ?? "no module"}: say which module to run, built as this file says at its beginning`);
+    process.exit(2);
+  }
   const module = new WebAssembly.Module(readFileSync(file));
   const memory = new WebAssembly.Memory({ initial: 256, maximum: MOST_PAGES, shared: true });
   const wasi = new WASI({ version: "preview1", args: ["asked", ...scenes] });

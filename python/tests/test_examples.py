@@ -18,6 +18,7 @@ def documented() -> Iterator[tuple[str, str]]:
     """What users can call, look at or set, and what is written on it."""
     for name in sprung.__all__:
         value = getattr(sprung, name)
+        assert not callable(value) or value.__module__.startswith("sprung"), name
         if inspect.isfunction(value):
             yield name, value.__doc__ or ""
         if not inspect.isclass(value):

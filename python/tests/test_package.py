@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import inspect
 import subprocess
 import sys
 import zlib
@@ -14,25 +13,6 @@ import pytest
 import sprung
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def test_everything_public_is_documented() -> None:
-    for name in sprung.__all__:
-        value = getattr(sprung, name)
-        if not (inspect.isclass(value) or inspect.isfunction(value)):
-            continue
-        assert value.__doc__, f"{name} has no documentation"
-        assert value.__module__.startswith("sprung"), name
-        if not inspect.isclass(value):
-            continue
-        for attribute, member in inspect.getmembers(value):
-            if attribute.startswith("_") or not (inspect.isroutine(member) or inspect.isdatadescriptor(member)):
-                continue
-            if inspect.isclass(member) or getattr(member, "__objclass__", None) in (tuple, BaseException):
-                continue
-            if hasattr(ValueError, attribute) or hasattr(tuple, attribute):
-                continue
-            assert inspect.getdoc(member), f"{name}.{attribute} has no documentation"
 
 
 def test_help_teaches() -> None:

@@ -37,6 +37,9 @@ export async function webkit() {
   if (!binary || !existsSync(WEBKIT_DRIVER) || !process.env.DISPLAY) return undefined;
   const port = 4400 + (process.pid % 1000);
   const driver = spawn(WEBKIT_DRIVER, [`--port=${port}`], { stdio: "inherit" });
+  // Whatever goes wrong here, it is not left behind, nor waited for.
+  driver.unref();
+  process.once("exit", () => driver.kill());
   const call = async (method, path, body) => {
     const answer = await fetch(`http://127.0.0.1:${port}${path}`, { method, body: body && JSON.stringify(body) });
     const { value } = await answer.json();
@@ -67,7 +70,6 @@ export async function webkit() {
     picture: async () => Buffer.from(await session("GET", "/screenshot"), "base64"),
     close: async () => {
       await session("DELETE", "").catch(() => undefined);
-      driver.kill();
     },
   };
 }

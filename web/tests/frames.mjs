@@ -1,6 +1,7 @@
-// How long the page's pictures take while large scenes play beside them: by hand, in this folder, after `cargo xtask web`,
+// How long the page's pictures take while large scenes play beside them: by hand, after `cargo xtask web`, which copies this file to
+// where the packages are,
 //
-//     SPRUNG_PAGE=../dist node frames.mjs
+//     cd target/web-tests && SPRUNG_PAGE=../../web/dist node frames.mjs
 //
 // For each scene: the time that the page's own thread works for a picture, and the time from one picture to the next, paused and
 // playing; medians, and of the time between pictures the longest of ten seconds too.

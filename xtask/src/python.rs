@@ -50,7 +50,7 @@ pub fn python() -> Outcome {
 fn other(wheel: &Path, system: &str) -> Outcome {
     let python = environment(&format!("venv-{system}"), system)?;
     pip(&python, &[&wheel.display().to_string(), "pytest"])?;
-    let tests = ["arrays", "bits", "errors", "package", "physics", "threads", "trajectory"];
+    let tests = ["arrays", "bits", "errors", "examples", "package", "physics", "threads", "trajectory"];
     let files = tests.map(|name| format!("python/tests/test_{name}.py"));
     let pytest = program(&python, &["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]);
     run(tidy(pytest).args(files))

@@ -125,7 +125,7 @@ fn compare(ui: &mut Ui, state: &mut AppState, has_room: bool) {
 fn memory(ui: &mut Ui, timeline: &Timeline) {
     let mega = |bytes: usize| bytes.div_ceil(1 << 20);
     let (used, most) = timeline.bytes;
-    // The first state, and the curves, are kept beside what may be used up.
+    // The first state is always kept, even beyond what may be used up.
     let text = match used < most {
         true => format!("recording: {} of {} MB", mega(used), mega(most)),
         false => format!("recording: {} MB, full", mega(used)),

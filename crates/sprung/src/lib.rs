@@ -41,7 +41,7 @@ pub use settle::{SettleOptions, Settled};
 pub use simulation::{Checkpoint, MOST_STEPS, Settling, Simulation};
 pub use state::{Moment, Snapshot, State};
 pub use text::significant;
-pub use watch::{BlowUp, Cause, SAFE_SHARE};
+pub use watch::{BlowUp, Cause, PATIENCE, SAFE_SHARE};
 pub use workers::{Inline, Workers};
 
 /// The README's example is one of the tests.

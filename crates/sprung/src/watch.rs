@@ -17,7 +17,7 @@ use crate::workers::Workers;
 
 /// Steps in a row that energy must come from nowhere before a run counts as blown up. Also how often, in steps, a calm run
 /// is looked at: its energies cost about as much as a step.
-const PATIENCE: u64 = 20;
+pub const PATIENCE: u64 = 20;
 
 /// The part of a limit on dt that is safe to take, 5 % below it. The limit itself is safe in real numbers; the margin is for
 /// the rounding of a float32 step, for a mode at its very limit, which rings undamped, and for a network that moves on.

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 use sprung::scene::{BUILTIN, Kind};
-use sprung::{Code, Error, Result, Simulation, Vec3};
+use sprung::{Code, Error, PATIENCE, Result, Simulation, Vec3};
 
 use crate::args::{BenchArgs, SceneArgs};
 use crate::console::{grouped, say};
@@ -17,11 +17,8 @@ const NOISE: f32 = 0.1;
 /// Runs of which the fastest counts; machines are noisy, and noise only ever slows.
 const REPEATS: usize = 5;
 
-/// Springs evaluated in each run, in all.
+/// Springs evaluated in each run, in all; or somewhat more, so that every run has as many looks at the energy.
 const STEPS_TIMES_SPRINGS: u64 = 20_000_000;
-
-/// Steps between two looks at the energy: a run is a whole number of these, or the fastest would be one that has fewer looks.
-const STEPS_TO_A_LOOK: u64 = 20;
 
 /// One scene's figures.
 #[derive(Serialize, Deserialize)]
@@ -104,9 +101,8 @@ fn measure(scene: &str, threads: usize) -> Result<Figures> {
     simulation.steps(1)?;
     let setup_s = begun.elapsed().as_secs_f64();
 
-    let steps = (STEPS_TIMES_SPRINGS / springs.max(points) as u64)
-        .clamp(1, 100_000)
-        .next_multiple_of(STEPS_TO_A_LOOK);
+    let steps =
+        (STEPS_TIMES_SPRINGS / springs.max(points) as u64).clamp(1, 100_000).next_multiple_of(PATIENCE);
     let mut best = f64::INFINITY;
     for _ in 0..REPEATS {
         let begun = Instant::now();

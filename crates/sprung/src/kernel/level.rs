@@ -106,7 +106,7 @@ fn avx512<W: Work>(work: W) -> W::Output {
 /// Has the calling function's part of the stack begin at a cache line.
 ///
 /// The compiler keeps vectors there for which it has no register, and by itself aligns them to 16 bytes: most then lie across two
-/// cache lines, and in some threads, wherever their stacks happen to begin, across two pages, which made the step a fifth slower.
+/// cache lines. Some lay across two pages, in threads whose stack happened to begin so, and made the step a fifth slower there.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn align_stack() {
